@@ -1,0 +1,81 @@
+# synpo: make deps installs what is needed, make builds into build/, make check tests, make demo shows it at work.
+
+CXX      ?= g++
+CXXFLAGS ?= -O3 -march=native
+PREFIX   ?= /usr/local
+B        := build
+
+ALL_CXXFLAGS := -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP $(CXXFLAGS) -Ilib -isystem /usr/include/eigen3
+OPENCV_CFLAGS := -isystem /usr/include/opencv4
+OPENCV_LIBS   = -lopencv_freetype -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+
+TOOLS    := synpo-gen-expert synpo-train synpo-eval synpo-matrix synpo-render
+LIB_SRC  := $(wildcard lib/*/*.cc)
+LIB_OBJ  := $(LIB_SRC:%.cc=$(B)/%.o) $(B)/builtin_maps.o
+TOOL_SRC := $(wildcard tools/*.cc)
+TEST_SRC := $(wildcard tests/unit/*.cc)
+TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
+MAPS     := $(wildcard lib/world/maps/map*.txt)
+
+PACKAGES := g++ make pkg-config libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
+            libgtest-dev bats jq man-db
+
+.PHONY: all lib check bench demo deps install clean check-torch
+all: $(TOOLS:%=$(B)/%)
+lib: $(B)/libsynpo.a
+
+$(B)/libsynpo.a: $(LIB_OBJ)
+	rm -f $@
+	ar rcs $@ $^
+
+# Every tool is one file of its name, and whatever stands beside it as NAME-*.cc.
+define TOOL_RULE
+$(B)/$(1): $(patsubst %.cc,$(B)/%.o,$(wildcard tools/$(1).cc tools/$(1)-*.cc)) $(B)/libsynpo.a
+	$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(OPENCV_LIBS))
+endef
+$(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
+
+$(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a
+	$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS)
+
+$(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
+	$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(OPENCV_LIBS)
+
+# Only the drawing room, its tool and its tests see OpenCV.
+$(B)/lib/draw/%.o $(B)/tests/unit/draw%.o: ALL_CXXFLAGS += $(OPENCV_CFLAGS)
+
+$(B)/%.o: %.cc
+	@mkdir -p $(@D)
+	$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
+
+$(B)/builtin_maps.cc: $(MAPS) Makefile
+	@mkdir -p $(@D)
+	@{ echo '#include "world/builtin_maps.h"'; echo 'namespace synpo {'; echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
+	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; echo '};'; echo '}'; } > $@
+$(B)/builtin_maps.o: $(B)/builtin_maps.cc
+	$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
+
+check: all $(B)/unit-tests
+	scripts/check $(B)
+
+check-torch: $(B)/unit-tests
+	scripts/check-torch $(B)
+
+bench: all $(B)/synpo-bench
+	scripts/bench
+
+demo: all
+	scripts/demo
+
+deps:
+	scripts/deps $(PACKAGES)
+
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5 $(DESTDIR)$(PREFIX)/share/man/man7
+	install -m 755 $(TOOLS:%=$(B)/%) $(DESTDIR)$(PREFIX)/bin
+	for section in 1 5 7; do install -m 644 man/*.$$section $(DESTDIR)$(PREFIX)/share/man/man$$section; done
+
+clean:
+	rm -rf $(B)
+
+-include $(shell find $(B) -name '*.d' 2>/dev/null)

@@ -1,0 +1,71 @@
+// Files and standard streams: lines and bytes in, checked and atomic bytes out. `-` is stdin or stdout.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace synpo {
+
+// Reads from a file or stdin through a buffer. Errors name the file and the line or the byte.
+class Input {
+ public:
+  // Throws kNoInput when the file cannot be opened, kUsage when stdin is a terminal.
+  explicit Input(const std::string& path);
+  ~Input();
+  Input(const Input&) = delete;
+  Input& operator=(const Input&) = delete;
+
+  // The next line without its newline (a missing last newline is accepted); false at the end. A line longer than
+  // `limit` bytes is an error (kData).
+  bool line(std::string& out, size_t limit = 16 << 20);
+  // Up to `size` bytes; fewer only at the end of the input.
+  size_t read(void* to, size_t size);
+  // Everything that is left; more than `limit` bytes is an error (kData).
+  std::string rest(size_t limit);
+
+  const std::string& name() const { return name_; }   // for messages: the path, or "standard input"
+  uint64_t line_number() const { return lines_; }     // of the line returned last, from 1
+  uint64_t offset() const { return offset_; }         // bytes taken so far
+
+  // Throws kData with "name: line N: ..." in front of the arguments.
+  [[noreturn]] void bad_line(const std::string& message) const;
+
+ private:
+  bool fill();
+  int fd_;
+  std::string name_;
+  std::vector<char> buffer_;
+  size_t begin_ = 0, end_ = 0;
+  uint64_t lines_ = 0, offset_ = 0;
+};
+
+// Writes to stdout, or to a temporary beside `path` that takes the name in finish(). Unfinished output to a file leaves
+// nothing behind. A full disk is kIo, a file that cannot be made kCantCreate.
+class Output {
+ public:
+  enum class Kind { kText, kBinary };
+  // Binary output to a terminal is refused (kUsage) unless `force`.
+  explicit Output(const std::string& path, Kind kind = Kind::kText, bool force = false);
+  ~Output();
+  Output(const Output&) = delete;
+  Output& operator=(const Output&) = delete;
+
+  void write(std::string_view bytes);
+  void flush();
+  // Flushes, checks, and gives the file its name.
+  void finish();
+  bool is_stdout() const { return path_ == "-"; }
+
+ private:
+  [[noreturn]] void failed(const char* what);
+  std::string path_, temporary_;
+  int fd_;
+  std::string buffer_;
+  bool finished_ = false;
+};
+
+// Writes `bytes` to `path` as Output does.
+void write_file(const std::string& path, std::string_view bytes, Output::Kind kind = Output::Kind::kBinary, bool force = false);
+
+}  // namespace synpo

@@ -1,0 +1,111 @@
+#include "base/parallel.h"
+
+#include <sched.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace synpo {
+namespace {
+
+// Tells the processor that this thread is waiting in a loop.
+inline void relax() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
+
+}  // namespace
+
+struct Parallel::Pool {
+  std::vector<std::thread> workers;
+  std::mutex mutex;
+  std::condition_variable wake, done;
+  const std::function<void(int, int)>* work = nullptr;
+  int shards = 0;
+  std::atomic<int> next{0};
+  std::atomic<uint64_t> round{0};
+  std::atomic<int> busy{0};
+  bool stop = false;
+  std::exception_ptr error;
+
+  void take_shards(int thread) {
+    for (int shard; (shard = next.fetch_add(1)) < shards;) {
+      try {
+        (*work)(shard, thread);
+      } catch (...) {
+        std::lock_guard lock(mutex);
+        if (!error) error = std::current_exception();
+      }
+    }
+  }
+
+  void loop(int thread) {
+    uint64_t seen = 0;
+    while (true) {
+      // A network step hands out work many times a millisecond: look for it a while before going to sleep.
+      for (int spin = 0; spin < 2000 && round.load(std::memory_order_acquire) == seen; ++spin) relax();
+      {
+        std::unique_lock lock(mutex);
+        wake.wait(lock, [&] { return stop || round.load() != seen; });
+        if (stop) return;
+        seen = round.load();
+      }
+      take_shards(thread);
+      if (busy.fetch_sub(1) == 1) {
+        std::lock_guard lock(mutex);
+        done.notify_one();
+      }
+    }
+  }
+};
+
+Parallel::Parallel(int threads) : pool_(std::make_unique<Pool>()) {
+  if (threads <= 0) {
+    cpu_set_t set;
+    threads = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
+  }
+  for (int i = 1; i < threads; ++i) pool_->workers.emplace_back([this, i] { pool_->loop(i); });
+}
+
+Parallel::~Parallel() {
+  {
+    std::lock_guard lock(pool_->mutex);
+    pool_->stop = true;
+  }
+  pool_->wake.notify_all();
+  for (auto& worker : pool_->workers) worker.join();
+}
+
+int Parallel::threads() const { return int(pool_->workers.size()) + 1; }
+
+void Parallel::run(int shards, const std::function<void(int, int)>& work) {
+  Pool& pool = *pool_;
+  if (pool.workers.empty()) {
+    for (int shard = 0; shard < shards; ++shard) work(shard, 0);
+    return;
+  }
+  {
+    std::lock_guard lock(pool.mutex);
+    pool.work = &work;
+    pool.shards = shards;
+    pool.next = 0;
+    pool.busy = int(pool.workers.size());
+    pool.error = nullptr;
+    pool.round.fetch_add(1, std::memory_order_release);
+  }
+  pool.wake.notify_all();
+  pool.take_shards(0);
+  for (int spin = 0; spin < 20000 && pool.busy.load(std::memory_order_acquire) > 0; ++spin) relax();
+  std::unique_lock lock(pool.mutex);
+  pool.done.wait(lock, [&] { return pool.busy == 0; });
+  if (pool.error) std::rethrow_exception(pool.error);
+}
+
+}  // namespace synpo

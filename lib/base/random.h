@@ -1,0 +1,36 @@
+// Counter-based random numbers (Philox 4x32, ten rounds; Salmon et al. 2011).
+// A stream is named by what it is for, so that results depend neither on threads nor on the order of work.
+#pragma once
+#include <array>
+#include <cstdint>
+
+namespace synpo {
+
+// What a stream of random numbers is used for; two purposes never share numbers.
+enum class Purpose : uint32_t {
+  kPairOrder = 1, kEpisodeStart, kNoise, kSplit, kInit, kBatch, kRollIn, kEvaluation, kEvaluationPairs, kBootstrap, kDropout
+};
+
+class Random {
+ public:
+  // The stream of (seed, purpose, a, b): for instance (seed, kEpisodeStart, pair, episode). a is taken modulo 2^32.
+  Random(uint64_t seed, Purpose purpose, uint64_t a = 0, uint64_t b = 0);
+
+  uint32_t next();
+  // Uniform in [0, n), without modulo bias. n > 0.
+  uint32_t below(uint32_t n);
+  // Uniform in [0, 1) with 32 bits.
+  double uniform();
+  // Standard normal (Box-Muller; both halves are used).
+  double normal();
+
+ private:
+  std::array<uint32_t, 2> key_;
+  std::array<uint32_t, 4> counter_;
+  std::array<uint32_t, 4> block_;
+  int used_ = 4;
+  double spare_ = 0;
+  bool has_spare_ = false;
+};
+
+}  // namespace synpo

@@ -1,0 +1,11 @@
+// SIGINT and SIGTERM as a flag that long loops read between two updates.
+#pragma once
+
+namespace synpo {
+
+// From now on the two signals set the flag; a second one kills as usual.
+void catch_stop_signals();
+// 0, or the signal that came.
+int stop_signal();
+
+}  // namespace synpo

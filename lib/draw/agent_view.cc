@@ -1,0 +1,156 @@
+#include "draw/agent_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/error.h"
+#include "draw/colour.h"
+#include "draw/maze_picture.h"
+#include "world/planner.h"
+
+namespace synpo {
+namespace {
+
+constexpr double kCellPt = 13, kBetweenPt = 24, kMarginPt = 12, kTextPt = 9, kTitlePt = 12;
+constexpr Rgb kWindow = {0, 150, 160};
+
+// What the agent sees, cell for cell in the colours of the network's input.
+void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const GridFrame* frame, int radius) {
+  uint8_t colours[kGridCells] = {};
+  if (frame) draw_view(maze, *frame, radius, colours);
+  for (int at = 0; at < kGridCells; ++at)
+    canvas.fill({x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}, kPalette[colours[at]]);
+}
+
+void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment, int radius) {
+  const auto box = [&](int at) { return Box{x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}; };
+  const GridFrame& now = moment.state.now;
+  draw_maze(canvas, x, y, cell, moment.maze);
+  for (int i = 0; i < kTreasures; ++i)
+    if (now.treasures[i] != kPicked) draw_treasure(canvas, box(now.treasures[i]), i);
+  draw_agent(canvas, box(now.agent));
+  const int row = now.agent / kGridSide, column = now.agent % kGridSide;
+  const int top = std::max(0, row - radius), left = std::max(0, column - radius);
+  const int bottom = std::min(kGridSide - 1, row + radius), right = std::min(kGridSide - 1, column + radius);
+  canvas.frame({x + left * cell, y + top * cell, (right - left + 1) * cell, (bottom - top + 1) * cell}, std::max(2, cell / 7), kWindow);
+}
+
+// A line of the key: how a thing is drawn in the maze, how in the agent's picture, and its name.
+struct KeyEntry {
+  std::function<void(Canvas&, const Box&)> sign;  // none: it is not in the maze
+  GridColour seen;
+  bool has_seen;
+  std::string name;
+};
+
+std::vector<KeyEntry> key_entries(const ViewMoment& moment) {
+  std::vector<KeyEntry> key;
+  const auto filled = [](Rgb colour) {
+    return [colour](Canvas& canvas, const Box& box) {
+      canvas.fill(box, colour);
+      canvas.frame(box, 1, kHairline);
+    };
+  };
+  key.push_back({[](Canvas& canvas, const Box& box) { draw_agent(canvas, box); }, kAgent, true, "agent"});
+  for (int i = 0; i < kTreasures; ++i) {
+    const int place = i == moment.task.first ? 1 : i == moment.task.second ? 2 : 0;
+    std::string name = kTreasureNames[i];
+    if (place) name += moment.state.picked >= place ? " (picked)" : place == 1 ? " (pick first)" : " (pick second)";
+    key.push_back({[i](Canvas& canvas, const Box& box) { draw_treasure(canvas, box, i); }, GridColour(kFirstTreasure + i), true, name});
+  }
+  key.push_back({filled(kPaperWall), kWall, true, "wall"});
+  key.push_back({filled(kPaperFloor), kFloor, true, "floor"});
+  key.push_back({nullptr, kUnseen, true, "not seen"});
+  key.push_back({[](Canvas& canvas, const Box& box) { canvas.frame(box, std::max(2, box.width / 7), kWindow); }, kUnseen, false, "window"});
+  return key;
+}
+
+std::string words(const ViewMoment& moment) {
+  std::string out = concat(moment.maze.name, ", task ", moment.task.name(), ", step ", moment.state.steps);
+  return out + (moment.expert_action < 0 ? ": success" : concat("; the expert's next action: ", kGridActionNames[moment.expert_action]));
+}
+
+}  // namespace
+
+ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps) {
+  const Planner planner(maze);
+  ViewMoment moment{maze, task, grid_reset(maze, random), {}, -1};
+  moment.history.push(moment.state.now);
+  const int length = planner.steps_to_success(task, moment.state);
+  if (steps > length) fail(Exit::kUsage, "the expert's episode ends after ", length, " steps, before step ", steps);
+  for (int64_t i = 0; i < steps; ++i) {
+    grid_step(maze, task, moment.state, planner.action(task, moment.state));
+    moment.history.push(moment.state.now);
+  }
+  if (steps < length) moment.expert_action = planner.action(task, moment.state);
+  return moment;
+}
+
+Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const Font& font) {
+  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * style.scale))); };
+  const int cell = px(kCellPt), side = kGridSide * cell, between = px(kBetweenPt), margin = px(kMarginPt);
+  const int text = px(kTextPt), title_size = px(kTitlePt), title_line = px(17), heading = text + px(8);
+  const int width = 2 * margin + 2 * side + between, right_x = margin + side + between;
+
+  // The row of four pictures takes the whole width.
+  const int small_gap = px(8), small_cell = (2 * side + between - (kHistory - 1) * small_gap) / kHistory / kGridSide;
+  const int small = small_cell * kGridSide;
+  const int history_height = style.history ? px(14) + heading + small + px(6) + text : 0;
+
+  const std::vector<KeyEntry> key = key_entries(moment);
+  const int sign = px(11), key_line = sign + px(7), key_between = px(18);
+  struct Place {
+    int x, y;
+  };
+  std::vector<Place> places;
+  Place next = {margin, 0};
+  for (const KeyEntry& entry : key) {
+    const int entry_width = (entry.sign ? sign + px(3) : 0) + (entry.has_seen ? sign + px(3) : 0) + px(2) + font.width(entry.name, text);
+    if (next.x > margin && next.x + entry_width > width - margin) next = {margin, next.y + key_line};
+    places.push_back(next);
+    next.x += entry_width + key_between;
+  }
+
+  const std::vector<std::string> title = font.wrapped(style.title.empty() ? words(moment) : style.title, title_size, width - 2 * margin);
+  const int headings_y = margin + int(title.size()) * title_line + px(5), panels_y = headings_y + heading;
+  const int key_y = panels_y + side + history_height + px(14);
+  Canvas canvas(width, key_y + next.y + sign + margin, font);
+
+  for (size_t i = 0; i < title.size(); ++i) canvas.text(margin, margin + int(i) * title_line, title[i], title_size, kInk);
+  const int window = 2 * style.radius + 1;
+  canvas.text(margin, headings_y, "(a) the maze", text, kSoftInk);
+  canvas.text(right_x, headings_y, concat("(b) what the agent sees, window ", window, " x ", window), text, kSoftInk);
+  draw_whole(canvas, margin, panels_y, cell, moment, style.radius);
+  draw_seen(canvas, right_x, panels_y, cell, moment.maze, &moment.state.now, style.radius);
+
+  if (style.history) {
+    const int y = panels_y + side + px(14);
+    canvas.text(margin, y, "(c) the network's input: the last four pictures", text, kSoftInk);
+    for (int i = 0; i < kHistory; ++i) {
+      const bool missing = i < kHistory - moment.history.count;
+      const int x = margin + i * (small + small_gap), ago = kHistory - 1 - i;
+      draw_seen(canvas, x, y + heading, small_cell, moment.maze, missing ? nullptr : &moment.history.frames[i], style.radius);
+      const std::string when = ago == 0 ? "now" : concat(ago, ago == 1 ? " step ago" : " steps ago");
+      canvas.text(x + small / 2, y + heading + small + px(6), missing ? "before the start: zero" : when, text, kInk, Across::kCentre);
+    }
+  }
+
+  for (size_t i = 0; i < key.size(); ++i) {
+    int x = places[i].x;
+    const int y = key_y + places[i].y;
+    if (key[i].sign) {
+      key[i].sign(canvas, {x, y, sign, sign});
+      x += sign + px(3);
+    }
+    if (key[i].has_seen) {
+      canvas.fill({x, y, sign, sign}, kPalette[key[i].seen]);
+      canvas.frame({x, y, sign, sign}, 1, kHairline);
+      x += sign + px(3);
+    }
+    canvas.text(x + px(2), y + sign / 2, key[i].name, text, kInk, Across::kLeft, Upright::kMiddle);
+  }
+  return canvas;
+}
+
+}  // namespace synpo

@@ -1,0 +1,70 @@
+#include "draw/colour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace synpo {
+namespace {
+
+constexpr double kLightest = 0.955, kDarkest = 0.40;
+
+double to_srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
+double to_linear(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
+
+struct Linear {
+  double r, g, b;
+  bool in_gamut() const { return std::min({r, g, b}) >= -1e-6 && std::max({r, g, b}) <= 1 + 1e-6; }
+};
+
+// OKLab to linear sRGB (Ottosson 2020).
+Linear from_oklch(double lightness, double chroma, double hue_degrees) {
+  const double hue = hue_degrees * std::numbers::pi / 180, a = chroma * std::cos(hue), b = chroma * std::sin(hue);
+  const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3);
+  const double m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3);
+  const double s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+          -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+}
+
+uint8_t to_byte(double linear) { return uint8_t(std::lround(255 * to_srgb(std::clamp(linear, 0.0, 1.0)))); }
+
+}  // namespace
+
+Rgb ramp_colour(const Ramp& ramp, double rate) {
+  rate = std::clamp(rate, 0.0, 1.0);
+  const double lightness = kLightest + (kDarkest - kLightest) * rate;
+  // Already tinted at 0, so that the kinds of cells can be told apart there.
+  const double wanted = ramp.chroma * (0.2 + 0.8 * rate * (2 - rate));
+  double low = 0, high = 0.4;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = (low + high) / 2;
+    (from_oklch(lightness, middle, ramp.hue_degrees).in_gamut() ? low : high) = middle;
+  }
+  // Short of the gamut's edge, where a channel drops to 0 so steeply that it shows as a step in the ramp.
+  const Linear linear = from_oklch(lightness, std::min(wanted, 0.88 * low), ramp.hue_degrees);
+  return {to_byte(linear.r), to_byte(linear.g), to_byte(linear.b)};
+}
+
+const Scheme& find_scheme(const std::string& name) {
+  static const Scheme schemes[] = {
+      {"safe", {255, 0.14}, {59, 0.13}, {160, 0.02}},
+      {"purple-red", {305, 0.18}, {24, 0.165}, {250, 0.02}},
+      {"blue-red", {258, 0.15}, {24, 0.165}, {160, 0.02}},
+  };
+  for (const Scheme& scheme : schemes)
+    if (name == scheme.name) return scheme;
+  throw std::invalid_argument("expected safe, purple-red or blue-red");
+}
+
+double luminance(Rgb colour) {
+  return 0.2126 * to_linear(colour.r / 255.0) + 0.7152 * to_linear(colour.g / 255.0) + 0.0722 * to_linear(colour.b / 255.0);
+}
+
+Rgb ink_on(Rgb ground) {
+  // Where the contrast ratios of black and white with the ground, (Y + 0.05) / 0.05 and 1.05 / (Y + 0.05), are equal.
+  return luminance(ground) > std::sqrt(1.05 * 0.05) - 0.05 ? Rgb{0, 0, 0} : Rgb{255, 255, 255};
+}
+
+}  // namespace synpo

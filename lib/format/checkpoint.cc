@@ -1,0 +1,110 @@
+#include "format/checkpoint.h"
+
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/hash.h"
+
+namespace synpo {
+namespace {
+
+using Json = nlohmann::json;
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr char kFormat[] = "synpo-checkpoint";
+constexpr char kTrainPrefix[] = "train/";
+
+int64_t whole(const SafeTensors& file, const std::string& key) {
+  const std::string& text = file.meta(key);
+  const Json value = Json::parse(text, nullptr, false);
+  if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() > 9e18)
+    fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number from 0");
+  return value.get<int64_t>();
+}
+
+Json structure(const SafeTensors& file, const std::string& key) {
+  const Json value = Json::parse(file.meta(key), nullptr, false);
+  if (value.is_discarded()) fail(Exit::kData, "metadata '", key, "': no JSON");
+  return value;
+}
+
+OrderedJson to_json(const Checkpoint& c) {
+  OrderedJson out;
+  out["format"] = kFormat;
+  out["version"] = kCheckpointVersion;
+  out["method"] = c.method;
+  out["world"] = c.world;
+  out["rules"] = c.rules;
+  out["window"] = c.window;
+  out["updates"] = c.updates;
+  out["states"] = c.states;
+  out["seed"] = c.seed;
+  out["shape"] = c.shape;
+  out["options"] = c.options;
+  out["tasks"] = c.tasks;
+  out["seen"] = c.seen;
+  out["envs"] = OrderedJson::array();
+  for (const Checkpoint::Env& env : c.envs)
+    out["envs"].push_back({{"name", env.name}, {"hash", hex(env.hash)}, {"content", env.content}});
+  return out;
+}
+
+}  // namespace
+
+uint64_t Checkpoint::weights_hash() const {
+  Hash hash;
+  for (const auto& [name, tensor] : file.tensors)
+    if (!name.starts_with(kTrainPrefix)) hash.add(name).add(tensor.bytes);
+  return hash.value();
+}
+
+void Checkpoint::strip() {
+  std::erase_if(file.tensors, [](const auto& entry) { return entry.first.starts_with(kTrainPrefix); });
+}
+
+std::string Checkpoint::describe() const {
+  OrderedJson out = to_json(*this);
+  out["weights_hash"] = hex(weights_hash());
+  OrderedJson& tensors = out["tensors"] = OrderedJson::object();
+  for (const auto& [name, tensor] : file.tensors) tensors[name] = tensor.shape;
+  return out.dump(2);
+}
+
+Checkpoint read_checkpoint(Input& input) {
+  Checkpoint c;
+  c.file = read_safetensors(input);
+  try {
+    const SafeTensors& file = c.file;
+    if (file.metadata.count("format") == 0 || file.meta("format") != kFormat) fail(Exit::kData, "not a synpo checkpoint");
+    const int64_t version = whole(file, "version");
+    if (version < 1 || version > kCheckpointVersion)
+      fail(Exit::kData, "version ", version, ", this build reads 1 to ", kCheckpointVersion);
+    c.method = file.meta("method");
+    c.world = file.meta("world");
+    c.rules = int(std::min<int64_t>(whole(file, "rules"), INT32_MAX));
+    c.window = int(std::min<int64_t>(whole(file, "window"), 1000));
+    c.updates = whole(file, "updates");
+    c.states = whole(file, "states");
+    c.seed = uint64_t(whole(file, "seed"));
+    c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
+    c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();
+    c.shape = structure(file, "shape").get<std::map<std::string, double>>();
+    c.options = structure(file, "options").get<std::map<std::string, std::string>>();
+    for (const Json& env : structure(file, "envs"))
+      c.envs.push_back({env.at("name").get<std::string>(), parse_hex(env.at("hash").get<std::string>()), env.at("content").get<std::string>()});
+  } catch (const Error& error) {
+    fail(error.code(), "cannot read ", input.name(), ": ", error.what());
+  } catch (const Json::exception& error) {
+    fail(Exit::kData, "cannot read ", input.name(), ": malformed metadata (", error.what(), ")");
+  }
+  return c;
+}
+
+std::string format_checkpoint(const Checkpoint& checkpoint) {
+  SafeTensors file = checkpoint.file;
+  file.metadata.clear();
+  for (const auto& [key, value] : to_json(checkpoint).items()) file.metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  return format_safetensors(file);
+}
+
+}  // namespace synpo

@@ -1,0 +1,45 @@
+// Checkpoints: a safetensors file whose metadata tells all that is needed to use the weights (synpo-checkpoint(5)).
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/safetensors.h"
+
+namespace synpo {
+
+constexpr int kCheckpointVersion = 1;
+
+struct Checkpoint {
+  struct Env {
+    std::string name;
+    uint64_t hash;
+    std::string content;  // canonical
+  };
+  std::string method = "synpo";
+  std::string world = "gridworld";
+  int rules = 1;
+  int window = 1;
+  std::vector<Env> envs;
+  std::vector<std::string> tasks;
+  std::vector<std::pair<std::string, std::string>> seen;  // (env, task)
+  std::map<std::string, double> shape;                     // sizes of the network
+  std::map<std::string, std::string> options;              // hyper-parameters of the training, as text
+  int64_t updates = 0, states = 0;
+  uint64_t seed = 0;
+  SafeTensors file;  // the tensors; its metadata is made from the above
+
+  // Names what is computed: hash of the tensors that evaluation needs (all but those under train/).
+  uint64_t weights_hash() const;
+  // Drops everything under train/.
+  void strip();
+  // The metadata as one JSON object, for people.
+  std::string describe() const;
+};
+
+Checkpoint read_checkpoint(Input& input);
+std::string format_checkpoint(const Checkpoint& checkpoint);
+
+}  // namespace synpo

@@ -1,0 +1,38 @@
+// Run logs: TSV, a row a report, flushed (synpo-log(5)).
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "base/io.h"
+
+namespace synpo {
+
+struct RunLogRow {
+  int64_t update = 0, states = 0, trajectories = 0;
+  double seconds = 0, states_per_s = 0, learning_rate = 0;
+  double loss = 0, policy = 0, reward = 0, env = 0, task = 0;  // means since the row before
+  double right[4] = {};                                        // accuracy on moves, picks, walking on, starts; NaN where there were none
+  // Success and mean return on sampled pairs; only in rows behind an evaluation.
+  struct Evaluation {
+    double seen_success, seen_reward, unseen_success, unseen_reward;
+  };
+  std::optional<Evaluation> evaluation;
+};
+
+class RunLog {
+ public:
+  // Writes the header. An empty path writes nowhere.
+  explicit RunLog(const std::string& path);
+  ~RunLog();
+  RunLog(const RunLog&) = delete;
+  RunLog& operator=(const RunLog&) = delete;
+  void write(const RunLogRow& row);
+
+ private:
+  int fd_ = -1;
+  std::string path_;
+  void put(const std::string& text);
+};
+
+}  // namespace synpo

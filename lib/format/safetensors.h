@@ -1,0 +1,45 @@
+// Safetensors files: an 8-byte little-endian length, a JSON header, then the tensors' bytes. Readable by numpy and torch as they are.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "base/io.h"
+
+namespace synpo {
+
+enum class TensorType { kF32, kF64, kI64, kU8, kU64 };
+size_t type_size(TensorType type);
+
+struct Tensor {
+  TensorType type = TensorType::kF32;
+  std::vector<int64_t> shape;
+  std::string bytes;
+  // The number of elements.
+  size_t count() const;
+};
+
+struct SafeTensors {
+  std::map<std::string, std::string> metadata;
+  std::map<std::string, Tensor> tensors;
+
+  template <class T>
+  void add(const std::string& name, const std::vector<int64_t>& shape, const T* values, size_t count);
+  // Throws kData when the tensor is missing or has another type or count.
+  template <class T>
+  void get(const std::string& name, T* values, size_t count) const;
+  template <class T>
+  std::vector<T> get(const std::string& name) const;
+  bool has(const std::string& name) const { return tensors.count(name) > 0; }
+  // A metadata entry; throws kData when it is missing.
+  const std::string& meta(const std::string& key) const;
+};
+
+// Throws kData for anything that is not a whole, well-formed file; memory is taken only as bytes arrive.
+SafeTensors read_safetensors(Input& input);
+// Tensors in the order of their names, header keys sorted: the same content gives the same bytes.
+std::string format_safetensors(const SafeTensors& file);
+
+}  // namespace synpo

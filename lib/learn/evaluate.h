@@ -1,0 +1,39 @@
+// Success of a policy on pairs: greedy, every episode run to its own end.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "format/trajectory.h"
+#include "learn/episode.h"
+#include "policy/policy.h"
+
+namespace synpo {
+
+struct PairResult {
+  int64_t episodes = 0, successes = 0, wrong = 0, timeouts = 0, reward_cents = 0, length = 0;
+  void add(const PairResult& other);
+};
+
+// An episode to run: start state from (seed, kEvaluation, pair, number).
+struct EvalEpisode {
+  int pair;  // position in the list of pairs
+  int64_t number;
+};
+
+struct EvalOptions {
+  uint64_t seed = 1;
+  int window = 1;
+  int step_limit = kGridStepLimit;
+};
+
+// Called with the episodes of one shard, in order, when it has ended; shards come in order too.
+using EpisodeSink = std::function<void(const Trajectory&)>;
+
+// Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the order of
+// `pairs`; neither threads nor what else is in the list changes an episode.
+std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const GridSet& world, const std::vector<EnvTask>& pairs,
+                                 const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink = nullptr,
+                                 const std::function<void(size_t done)>& progress = nullptr);
+
+}  // namespace synpo

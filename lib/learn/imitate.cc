@@ -1,0 +1,212 @@
+#include "learn/imitate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "learn/evaluate.h"
+#include "nn/adam.h"
+#include "nn/loss.h"
+
+namespace synpo {
+namespace {
+
+Model fresh_model(const GridSet& world, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen, uint64_t seed) {
+  Model model;
+  model.method = method;
+  model.shape = options.shape(world);
+  model.window = -1;
+  model.seen = std::move(seen);
+  model.seed = seed;
+  model.policy = make_policy(method, model.shape);
+  model.parameters.grow(model.policy->parameters().total());
+  model.statistics.grow(model.policy->statistics().total());
+  model.statistics.zero();
+  model.policy->initialise({seed, options.embedding_sd}, model.parameters.data(), model.statistics.data());
+  return model;
+}
+
+void copy(const Buffer<float>& from, Buffer<float>& to) {
+  to.grow(from.size());
+  std::copy_n(from.data(), from.size(), to.data());
+}
+
+}  // namespace
+
+Imitation::Imitation(const GridSet& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
+                     std::vector<EnvTask> seen, uint64_t seed)
+    : world_(world), parallel_(parallel), options_(options), model_(fresh_model(world, method, options, std::move(seen), seed)),
+      memory_(size_t(options.memory)), running_(world, options.running_options(), seed), seen_grows_(model_.seen.empty()) {
+  const size_t count = model_.parameters.size();
+  gradient_.grow(count);
+  first_moment_.grow(count);
+  second_moment_.grow(count);
+  first_moment_.zero();
+  second_moment_.zero();
+  copy(model_.parameters, average_);
+  copy(model_.statistics, average_statistics_);
+}
+
+Imitation::Imitation(const GridSet& world, Parallel& parallel, const Checkpoint& checkpoint)
+    : Imitation(world, parallel, checkpoint.method, parse_options(checkpoint.options), {}, checkpoint.seed) {
+  const SafeTensors& file = checkpoint.file;
+  if (!file.has("train/position")) fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
+  Model saved = load_model(checkpoint, world);
+  if (describe_shape(saved.shape) != describe_shape(model_.shape)) fail(Exit::kData, "the checkpoint's shape and options disagree");
+  model_.seen = saved.seen;
+  model_.updates = saved.updates;
+  model_.states = saved.states;
+  model_.window = saved.window;
+  const Layout& parameters = model_.policy->parameters();
+  const Layout& statistics = model_.policy->statistics();
+  copy(saved.parameters, average_);
+  copy(saved.statistics, average_statistics_);
+  const bool averaged = options_.averaging > 0;
+  get_tensors(file, averaged ? "train/raw/" : "", parameters, model_.parameters.data());
+  get_tensors(file, averaged ? "train/raw/" : "", statistics, model_.statistics.data());
+  get_tensors(file, "train/m/", parameters, first_moment_.data());
+  get_tensors(file, "train/v/", parameters, second_moment_.data());
+  uint64_t position[4];
+  file.get("train/position", position, 4);
+  stream_lines_ = position[0];
+  stream_hash_ = position[1];
+  total_updates_ = int64_t(std::min<uint64_t>(position[2], INT64_MAX));
+  seen_grows_ = position[3] != 0;
+  memory_.load(file, "train/memory/", world_);
+  if (options_.batch_states > 0) running_.load(file, "train/running/", memory_);
+}
+
+void Imitation::take_weights(const Model& other) {
+  if (other.method != model_.method || describe_shape(other.shape) != describe_shape(model_.shape))
+    fail(Exit::kData, "the checkpoint's network is not the one asked for: method or sizes differ");
+  for (auto* to : {&model_.parameters, &average_}) std::copy_n(other.parameters.data(), other.parameters.size(), to->data());
+  for (auto* to : {&model_.statistics, &average_statistics_}) std::copy_n(other.statistics.data(), other.statistics.size(), to->data());
+}
+
+void Imitation::add_trajectories(TrajectoryStream& stream) {
+  const int64_t wanted = int64_t(model_.updates == 0 ? std::max(options_.fill, options_.read) : options_.read);
+  for (int64_t i = 0; i < wanted; ++i) {
+    std::optional<GridEpisode> episode = stream.next();
+    if (!episode) break;
+    if (seen_grows_ && !model_.is_seen(episode->pair)) model_.seen.push_back(episode->pair);
+    memory_.add(std::move(*episode));
+  }
+  stream_lines_ = stream.lines();
+  stream_hash_ = stream.hash();
+  if (model_.window < 0) model_.window = stream.window();
+}
+
+bool Imitation::update(TrajectoryStream& stream) {
+  add_trajectories(stream);
+  if (memory_.size() == 0) return false;
+  const bool single_steps = options_.batch_states > 0;
+  if (single_steps)
+    running_.draw(memory_, parallel_, int(options_.batch_states), model_.window, model_.updates, batch_);
+  else
+    TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed, model_.updates, batch_);
+
+  const int n = batch_.size();
+  logits_.grow(size_t(n) * kGridActions);
+  const StepBatch<float> steps = {n, batch_.pictures.data(), batch_.env.data(), batch_.task.data(), batch_.label.data(), batch_.taken.data(),
+                                  batch_.reward.data()};
+  const Losses losses = model_.policy->step(parallel_, steps, options_.losses(), model_.parameters.data(), model_.statistics.data(),
+                                            gradient_.data(), logits_.data());
+  if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", model_.updates + 1, ": try a smaller --lr");
+  AdamOptions adam = options_.adam();
+  adam.learning_rate = options_.rate(model_.updates, total_updates_);
+  const bool averaged = options_.averaging > 0;
+  // The first updates' weights are far from where the average should be.
+  const double keep = std::min(options_.averaging, (1.0 + model_.updates) / (10.0 + model_.updates));
+  adam_step(parallel_, adam, model_.updates + 1, model_.policy->parameters().total(), gradient_.data(), model_.parameters.data(),
+            first_moment_.data(), second_moment_.data(), averaged ? average_.data() : nullptr, keep);
+  if (averaged)
+    for (size_t i = 0; i < model_.policy->statistics().total(); ++i)
+      average_statistics_[i] = float(keep * average_statistics_[i] + (1 - keep) * model_.statistics[i]);
+
+  greedy_.resize(n);
+  for (int i = 0; i < n; ++i) {
+    greedy_[i] = argmax(logits_.data() + size_t(i) * kGridActions, kGridActions);
+    const int kind = int(batch_.kind[i]);
+    ++kind_count_[kind];
+    kind_right_[kind] += greedy_[i] == batch_.label[i];
+  }
+  if (single_steps) running_.advance(memory_, greedy_, model_.updates);
+  ++model_.updates;
+  model_.states += n;
+  ++reported_updates_;
+  reported_states_ += n;
+  loss_sum_.total += losses.total;
+  loss_sum_.policy += losses.policy;
+  loss_sum_.reward += losses.reward;
+  loss_sum_.env += losses.env;
+  loss_sum_.task += losses.task;
+  return true;
+}
+
+RunLogRow Imitation::take_report() {
+  RunLogRow row;
+  row.update = model_.updates;
+  row.states = model_.states;
+  row.trajectories = int64_t(stream_lines_);
+  row.learning_rate = options_.rate(std::max<int64_t>(0, model_.updates - 1), total_updates_);
+  const double updates = double(std::max<int64_t>(1, reported_updates_));
+  row.loss = loss_sum_.total / updates;
+  row.policy = loss_sum_.policy / updates;
+  row.reward = loss_sum_.reward / updates;
+  row.env = loss_sum_.env / updates;
+  row.task = loss_sum_.task / updates;
+  row.states_per_s = double(reported_states_);
+  for (int k = 0; k < kStepKinds; ++k) {
+    row.right[k] = double(kind_right_[k]) / kind_count_[k];
+    kind_right_[k] = kind_count_[k] = 0;
+  }
+  reported_updates_ = reported_states_ = 0;
+  loss_sum_ = {};
+  return row;
+}
+
+RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
+  std::vector<EnvTask> groups[2];  // unseen, seen
+  for (int env = 0; env < world_.envs(); ++env)
+    for (int task = 0; task < world_.task_count(); ++task) groups[model_.is_seen({env, task})].push_back({env, task});
+  double success[2], reward[2];
+  for (int seen = 0; seen < 2; ++seen) {
+    success[seen] = reward[seen] = std::nan("");
+    if (groups[seen].empty()) continue;
+    std::vector<std::pair<int, int>> pairs;
+    for (const EnvTask& pair : groups[seen]) pairs.emplace_back(pair.env, pair.task);
+    std::vector<EvalEpisode> jobs;
+    Random random(model_.seed, Purpose::kEvaluationPairs, uint64_t(seen));
+    for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
+    model_.policy->prepare_inference(parallel_, best_parameters().data(), best_statistics().data(), pairs);
+    PairResult sum;
+    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, {model_.seed, model_.window, kGridStepLimit}))
+      sum.add(result);
+    success[seen] = double(sum.successes) / sum.episodes;
+    reward[seen] = sum.reward_cents / 100.0 / sum.episodes;
+  }
+  return {success[1], reward[1], success[0], reward[0]};
+}
+
+Checkpoint Imitation::checkpoint(bool with_training_state) const {
+  Checkpoint c = describe_model(model_, world_);
+  c.options = describe_options(options_);
+  const Layout& parameters = model_.policy->parameters();
+  const Layout& statistics = model_.policy->statistics();
+  add_tensors(c.file, "", parameters, best_parameters().data());
+  add_tensors(c.file, "", statistics, best_statistics().data());
+  if (!with_training_state) return c;
+  if (options_.averaging > 0) {
+    add_tensors(c.file, "train/raw/", parameters, model_.parameters.data());
+    add_tensors(c.file, "train/raw/", statistics, model_.statistics.data());
+  }
+  add_tensors(c.file, "train/m/", parameters, first_moment_.data());
+  add_tensors(c.file, "train/v/", parameters, second_moment_.data());
+  const uint64_t position[4] = {stream_lines_, stream_hash_, uint64_t(total_updates_), seen_grows_};
+  c.file.add("train/position", {4}, position, 4);
+  memory_.save(c.file, "train/memory/");
+  if (options_.batch_states > 0) running_.save(c.file, "train/running/");
+  return c;
+}
+
+}  // namespace synpo

@@ -1,0 +1,74 @@
+// Imitation learning (Algorithm 1): a stream of expert trajectories in, a trained model out.
+#pragma once
+#include <optional>
+#include <string>
+
+#include "base/parallel.h"
+#include "format/run_log.h"
+#include "learn/model.h"
+#include "learn/recipe.h"
+#include "learn/stream.h"
+
+namespace synpo {
+
+// Everything that a run needs to go on as if it had never stopped.
+class Imitation {
+ public:
+  // A fresh run of `method`. No seen pairs: those that the stream brings.
+  Imitation(const GridSet& world, Parallel& parallel, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen,
+            uint64_t seed);
+  // A run that goes on from a checkpoint with its train/ part. Throws kData where that is missing or malformed.
+  Imitation(const GridSet& world, Parallel& parallel, const Checkpoint& checkpoint);
+  // Takes the weights of another model, whose shape must be this one's (kData).
+  void take_weights(const Model& other);
+
+  // One update: reads, draws, learns. False when there is nothing to draw from: the stream ended before its first trajectory.
+  bool update(TrajectoryStream& stream);
+
+  // Where the stream stood; a resumed run skips to there.
+  uint64_t stream_lines() const { return stream_lines_; }
+  uint64_t stream_hash() const { return stream_hash_; }
+  int64_t updates() const { return model_.updates; }
+  int64_t total_updates() const { return total_updates_; }
+  // The number of updates that the learning rate's schedule is laid out for.
+  void set_total_updates(int64_t total) { total_updates_ = total; }
+  const ImitationOptions& options() const { return options_; }
+  int window() const { return model_.window; }
+  const Model& model() const { return model_; }
+  // What the stream may bring; empty for anything.
+  std::vector<EnvTask> allowed() const { return seen_grows_ ? std::vector<EnvTask>() : model_.seen; }
+
+  // Means since the last call: losses, accuracies, learning rate. Times are the caller's.
+  RunLogRow take_report();
+  // Greedy success on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones at every call. NaN where there
+  // are no such pairs.
+  RunLogRow::Evaluation evaluate_sample(int episodes);
+
+  Checkpoint checkpoint(bool with_training_state) const;
+
+ private:
+  void add_trajectories(TrajectoryStream& stream);
+  // What is evaluated and saved: the averaged weights where there are any.
+  const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
+  const Buffer<float>& best_statistics() const { return options_.averaging > 0 ? average_statistics_ : model_.statistics; }
+
+  const GridSet& world_;
+  Parallel& parallel_;
+  ImitationOptions options_;
+  Model model_;
+  ReplayMemory memory_;
+  RunningDraw running_;
+  Buffer<float> gradient_, first_moment_, second_moment_, average_, average_statistics_, logits_;
+  Minibatch batch_;
+  std::vector<int> greedy_;
+  int64_t total_updates_ = 0;
+  uint64_t stream_lines_ = 0, stream_hash_ = Hash().value();
+  bool seen_grows_;  // no seen pairs were given: those that the stream brings are
+
+  // Sums since the last report.
+  int64_t reported_updates_ = 0, reported_states_ = 0;
+  Losses loss_sum_;
+  int64_t kind_count_[kStepKinds] = {}, kind_right_[kStepKinds] = {};
+};
+
+}  // namespace synpo

@@ -1,0 +1,67 @@
+#include "learn/memory.h"
+
+#include <algorithm>
+
+#include "base/error.h"
+
+namespace synpo {
+
+void ReplayMemory::add(GridEpisode episode) {
+  const size_t place = added_ % capacity_;
+  if (place == episodes_.size()) {
+    episodes_.emplace_back();
+    serials_.emplace_back();
+  }
+  episodes_[place] = std::move(episode);
+  serials_[place] = added_++;
+}
+
+// An episode is [env low, env high, task, agent, 5 treasures, steps low, steps high], then its actions and labels.
+void ReplayMemory::save(SafeTensors& file, const std::string& prefix) const {
+  std::vector<uint8_t> bytes;
+  for (const GridEpisode& e : episodes_) {
+    const size_t steps = e.actions.size();
+    bytes.insert(bytes.end(), {uint8_t(e.pair.env), uint8_t(e.pair.env >> 8), uint8_t(e.pair.task), e.start.now.agent});
+    bytes.insert(bytes.end(), e.start.now.treasures.begin(), e.start.now.treasures.end());
+    bytes.insert(bytes.end(), {uint8_t(steps), uint8_t(steps >> 8)});
+    bytes.insert(bytes.end(), e.actions.begin(), e.actions.end());
+    bytes.insert(bytes.end(), e.labels.begin(), e.labels.end());
+  }
+  file.add(prefix + "episodes", {int64_t(bytes.size())}, bytes.data(), bytes.size());
+  file.add(prefix + "serials", {int64_t(serials_.size())}, serials_.data(), serials_.size());
+  file.add(prefix + "added", {1}, &added_, 1);
+}
+
+void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, const GridSet& world) {
+  const std::vector<uint8_t> bytes = file.get<uint8_t>(prefix + "episodes");
+  serials_ = file.get<uint64_t>(prefix + "serials");
+  file.get(prefix + "added", &added_, 1);
+  episodes_.clear();
+  constexpr size_t kHead = 6 + kTreasures;
+  const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "episodes' is malformed"); };
+  for (size_t at = 0; at < bytes.size();) {
+    if (bytes.size() - at < kHead) bad();
+    const uint8_t* head = bytes.data() + at;
+    GridEpisode e;
+    e.pair = {head[0] | head[1] << 8, head[2]};
+    if (e.pair.env >= world.envs() || e.pair.task >= world.task_count()) bad();
+    e.start.now.agent = head[3];
+    std::copy_n(head + 4, kTreasures, e.start.now.treasures.begin());
+    const auto floor = [&](uint8_t cell) { return !world.maze(e.pair.env).wall[cell]; };
+    if (!floor(e.start.now.agent)) bad();
+    for (const uint8_t cell : e.start.now.treasures)
+      if (!floor(cell)) bad();
+    const size_t steps = head[4 + kTreasures] | head[5 + kTreasures] << 8;
+    at += kHead;
+    if (steps < 1 || steps > kGridStepLimit || bytes.size() - at < 2 * steps) bad();
+    e.actions.assign(bytes.begin() + at, bytes.begin() + at + steps);
+    e.labels.assign(bytes.begin() + at + steps, bytes.begin() + at + 2 * steps);
+    for (size_t i = 0; i < 2 * steps; ++i)
+      if (bytes[at + i] >= kGridActions) bad();
+    at += 2 * steps;
+    episodes_.push_back(std::move(e));
+  }
+  if (episodes_.size() > capacity_ || serials_.size() != episodes_.size()) bad();
+}
+
+}  // namespace synpo

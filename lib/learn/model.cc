@@ -1,0 +1,125 @@
+#include "learn/model.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "policy/synpo.h"
+
+namespace synpo {
+namespace {
+
+constexpr double kSizeLimit = 65536;
+
+struct SizeName {
+  const char* name;
+  int PolicyShape::*member;
+};
+constexpr SizeName kSizes[] = {{"envs", &PolicyShape::envs},         {"tasks", &PolicyShape::tasks},
+                               {"actions", &PolicyShape::actions},   {"feature", &PolicyShape::feature},
+                               {"basis", &PolicyShape::basis},       {"embedding", &PolicyShape::embedding},
+                               {"hidden", &PolicyShape::hidden}};
+struct SwitchName {
+  const char* name;
+  bool PolicyShape::*member;
+};
+constexpr SwitchName kSwitches[] = {{"normalise_input", &PolicyShape::normalise_input},
+                                    {"normalise_embeddings", &PolicyShape::normalise_embeddings}};
+
+}  // namespace
+
+std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape) {
+  if (method == "synpo") return std::make_unique<SynPo<float>>(shape);
+  fail(Exit::kData, "unknown method ", quoted(method), ", this build has synpo");
+}
+
+std::map<std::string, double> describe_shape(const PolicyShape& shape) {
+  std::map<std::string, double> sizes;
+  for (const SizeName& size : kSizes) sizes[size.name] = shape.*size.member;
+  for (const SwitchName& flag : kSwitches) sizes[flag.name] = shape.*flag.member;
+  for (size_t i = 0; i < shape.channels.size(); ++i) sizes["channels" + std::to_string(i + 1)] = shape.channels[i];
+  return sizes;
+}
+
+PolicyShape parse_shape(const std::map<std::string, double>& sizes) {
+  const auto get = [&](const std::string& name, double low, double high) {
+    const auto found = sizes.find(name);
+    if (found == sizes.end()) fail(Exit::kData, "the shape has no '", name, "'");
+    if (!(found->second >= low && found->second <= high) || found->second != std::floor(found->second))
+      fail(Exit::kData, "shape '", name, "': found ", found->second, ", expected a whole number from ", low, " to ", high);
+    return int(found->second);
+  };
+  PolicyShape shape;
+  for (const SizeName& size : kSizes) shape.*size.member = get(size.name, 1, kSizeLimit);
+  for (const SwitchName& flag : kSwitches) shape.*flag.member = get(flag.name, 0, 1) != 0;
+  for (size_t i = 0; i < shape.channels.size(); ++i) shape.channels[i] = get("channels" + std::to_string(i + 1), 1, 4096);
+  return shape;
+}
+
+bool Model::is_seen(EnvTask pair) const { return std::find(seen.begin(), seen.end(), pair) != seen.end(); }
+
+GridSet world_of(const Checkpoint& checkpoint) {
+  if (checkpoint.world != "gridworld") fail(Exit::kData, "world ", quoted(checkpoint.world), ", this build has gridworld");
+  if (checkpoint.rules != kGridRules) fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", kGridRules);
+  std::vector<Maze> mazes;
+  for (const Checkpoint::Env& env : checkpoint.envs) {
+    mazes.push_back(parse_maze(env.name, env.content, "env " + quoted(env.name)));
+    if (mazes.back().hash != env.hash) fail(Exit::kData, "env ", quoted(env.name), ": content and hash differ");
+  }
+  GridSet world(std::move(mazes));
+  if (world.envs() == 0) fail(Exit::kData, "the checkpoint has no environment");
+  std::vector<std::string> tasks;
+  for (const Task& task : world.tasks()) tasks.push_back(task.name());
+  if (checkpoint.tasks != tasks) fail(Exit::kData, "the checkpoint's tasks are not this build's");
+  return world;
+}
+
+void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values) {
+  for (const TensorInfo& tensor : layout.tensors())
+    file.add(prefix + tensor.name, {tensor.shape.begin(), tensor.shape.end()}, values + tensor.offset, tensor.size);
+}
+
+void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values) {
+  std::fill_n(values, layout.total(), 0.0f);
+  for (const TensorInfo& tensor : layout.tensors()) {
+    file.get(prefix + tensor.name, values + tensor.offset, tensor.size);
+    for (size_t i = 0; i < tensor.size; ++i)
+      if (!std::isfinite(values[tensor.offset + i])) fail(Exit::kData, "tensor '", prefix, tensor.name, "' holds a value that is not finite");
+  }
+}
+
+Model load_model(const Checkpoint& checkpoint, const GridSet& world) {
+  Model model;
+  model.method = checkpoint.method;
+  model.shape = parse_shape(checkpoint.shape);
+  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != kGridActions)
+    fail(Exit::kData, "the network's shape does not fit the world");
+  model.window = checkpoint.window;
+  model.seed = checkpoint.seed;
+  model.updates = checkpoint.updates;
+  model.states = checkpoint.states;
+  std::vector<PairRow> rows;
+  for (const auto& [env, task] : checkpoint.seen) rows.push_back({env, task, true, ""});
+  model.seen = resolve_pairs(world, rows, false);
+  model.policy = make_policy(model.method, model.shape);
+  get_tensors(checkpoint.file, "", model.policy->parameters(), model.parameters.grow(model.policy->parameters().total()));
+  get_tensors(checkpoint.file, "", model.policy->statistics(), model.statistics.grow(model.policy->statistics().total()));
+  return model;
+}
+
+Checkpoint describe_model(const Model& model, const GridSet& world) {
+  Checkpoint c;
+  c.method = model.method;
+  c.rules = kGridRules;
+  c.window = model.window;
+  for (const Maze& maze : world.mazes()) c.envs.push_back({maze.name, maze.hash, maze.canonical_text()});
+  for (const Task& task : world.tasks()) c.tasks.push_back(task.name());
+  for (const EnvTask& pair : model.seen) c.seen.emplace_back(world.maze(pair.env).name, world.tasks()[pair.task].name());
+  c.shape = describe_shape(model.shape);
+  c.updates = model.updates;
+  c.states = model.states;
+  c.seed = model.seed;
+  return c;
+}
+
+}  // namespace synpo

@@ -1,0 +1,44 @@
+// A policy together with its weights and the world it was made for: what a checkpoint holds.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "format/checkpoint.h"
+#include "learn/episode.h"
+#include "nn/buffer.h"
+#include "policy/policy.h"
+#include "world/grid_set.h"
+
+namespace synpo {
+
+std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape);
+std::map<std::string, double> describe_shape(const PolicyShape& shape);
+// Throws kData for sizes that are missing or out of bounds.
+PolicyShape parse_shape(const std::map<std::string, double>& sizes);
+
+struct Model {
+  std::string method;
+  PolicyShape shape;
+  int window = 1;
+  std::vector<EnvTask> seen;
+  uint64_t seed = 0;
+  int64_t updates = 0, states = 0;
+  std::unique_ptr<Policy<float>> policy;
+  Buffer<float> parameters, statistics;
+
+  bool is_seen(EnvTask pair) const;
+};
+
+// The world in the checkpoint, and the model. Throws kData when tensors or world don't fit this build.
+GridSet world_of(const Checkpoint& checkpoint);
+Model load_model(const Checkpoint& checkpoint, const GridSet& world);
+
+// Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back.
+void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values);
+void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values);
+
+// Everything but the tensors.
+Checkpoint describe_model(const Model& model, const GridSet& world);
+
+}  // namespace synpo

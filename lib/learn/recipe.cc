@@ -1,0 +1,174 @@
+#include "learn/recipe.h"
+
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/error.h"
+
+namespace synpo {
+namespace {
+
+using O = ImitationOptions;
+
+struct Hyper {
+  const char* name;
+  double O::*value;
+  double low, high;
+  bool whole;
+  const char* help;
+  const char* heading = nullptr;
+};
+
+constexpr double kMany = 1e9;
+
+constexpr Hyper kHypers[] = {
+    {"trajectories", &O::trajectories, 1, 1e5, true, "whole trajectories an update, where --batch-states is 0", "What an update learns from"},
+    {"batch-states", &O::batch_states, 0, 1e6, true, "single steps an update, from episodes that run side by side"},
+    {"memory", &O::memory, 1, 1e7, true, "trajectories kept in the replay memory"},
+    {"read", &O::read, 0, 1e6, true, "trajectories read from the stream before each update"},
+    {"fill", &O::fill, 1, 1e7, true, "trajectories read before the first update"},
+    {"running", &O::running, 1, 1e7, true, "episodes that run side by side"},
+    {"balance", &O::balance, 0.001, 1, false, "probability of taking a step that is not on a treasure"},
+    {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
+    {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
+    {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
+    {"roll-limit", &O::roll_limit, 1, kGridStepLimit, true, "steps after which a running episode is given up"},
+    {"lr", &O::learning_rate, 0, 1, false, "learning rate of Adam", "The optimiser"},
+    {"cosine", &O::cosine, 0, 1, true, "1: the learning rate falls by half a cosine to the run's end; 0: constant"},
+    {"lr-final", &O::final_rate, 0, 1, false, "learning rate at the cosine's end"},
+    {"warm-up", &O::warm_up, 0, kMany, true, "updates over which the learning rate rises from 0"},
+    {"beta1", &O::beta1, 0, 0.9999999, false, "decay of Adam's first moment"},
+    {"beta2", &O::beta2, 0, 0.9999999, false, "decay of Adam's second moment"},
+    {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
+    {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
+    {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
+    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
+    {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
+    {"task-loss", &O::task_loss, 0, 1e6, false, "weight of task disentanglement (lambda 3)"},
+    {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},
+    {"normalise-input", &O::normalise_input, 0, 1, true, "1: batch normalisation of the pictures, 0: fixed scaling"},
+    {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "1: embeddings are scaled to one length"},
+    {"feature", &O::feature, 1, 4096, true, "size d of the state feature"},
+    {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
+    {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
+    {"hidden", &O::hidden, 1, 16384, true, "hidden units of alpha, beta, f_env and f_task"},
+};
+
+std::string shortest(double value) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+bool parse(const std::string& text, const Hyper& hyper, double& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size() && value >= hyper.low && value <= hyper.high &&
+         (!hyper.whole || value == std::floor(value));
+}
+
+std::string expectation(const Hyper& hyper) {
+  return concat("expected ", hyper.whole ? "a whole number" : "a number", " from ", hyper.low, " to ", hyper.high);
+}
+
+}  // namespace
+
+RunningOptions O::running_options() const {
+  return {int(running), balance, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
+}
+
+PolicyShape O::shape(const GridSet& world) const {
+  PolicyShape shape;
+  shape.envs = world.envs();
+  shape.tasks = world.task_count();
+  shape.actions = kGridActions;
+  shape.feature = int(feature);
+  shape.basis = int(basis);
+  shape.embedding = int(embedding);
+  shape.hidden = int(hidden);
+  shape.normalise_input = normalise_input != 0;
+  shape.normalise_embeddings = normalise_embeddings != 0;
+  return shape;
+}
+
+double O::rate(int64_t update, int64_t total) const {
+  if (update < warm_up) return learning_rate * (update + 1) / warm_up;
+  if (cosine == 0) return learning_rate;
+  const double span = std::max(1.0, double(total) - warm_up);
+  const double done = std::min(1.0, (update - warm_up) / span);
+  return final_rate + (learning_rate - final_rate) * 0.5 * (1 + std::cos(M_PI * done));
+}
+
+ImitationOptions recipe(const std::string& name) {
+  ImitationOptions options;
+  if (name == "paper") {
+    options.normalise_input = 1;
+    return options;
+  }
+  if (name != "fast") fail(Exit::kUsage, "unknown recipe ", quoted(name), ", expected fast or paper");
+  options.batch_states = 512;
+  options.fill = 2000;
+  options.balance = 0.2;
+  options.roll_in = 0.5;
+  options.roll_noise = 0.1;
+  options.fresh_starts = 1;
+  options.roll_limit = 120;
+  options.cosine = 1;
+  options.warm_up = 200;
+  options.weight_decay = 1e-4;
+  options.task_loss = 1;
+  options.embedding_sd = 1;
+  return options;
+}
+
+void RecipeOptions::add_to(Options& options) {
+  options.call(0, "recipe", "NAME", "preset: fast, or paper (the supplement to the letter) [fast]", [this](const std::string& name) {
+    try {
+      recipe(name);
+    } catch (const Error&) {
+      throw std::invalid_argument("expected fast or paper");
+    }
+    recipe_ = name;
+    recipe_given_ = true;
+  });
+  static std::map<std::string, std::string> help;  // option tables keep pointers
+  const ImitationOptions fast = recipe("fast"), paper = recipe("paper");
+  for (const Hyper& hyper : kHypers) {
+    if (hyper.heading) options.section(hyper.heading);
+    const std::string a = shortest(fast.*hyper.value), b = shortest(paper.*hyper.value);
+    const std::string shown = std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
+    options.call(0, hyper.name, "X", (help[hyper.name] = shown).c_str(), [this, &hyper](const std::string& text) {
+      double value = 0;
+      if (!parse(text, hyper, value)) throw std::invalid_argument(expectation(hyper));
+      changes_[hyper.name] = value;
+    });
+  }
+}
+
+ImitationOptions RecipeOptions::result() const {
+  ImitationOptions options = recipe(recipe_);
+  for (const Hyper& hyper : kHypers)
+    if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
+  if (options.batch_states == 0)
+    for (const char* name : {"balance", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
+      if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
+  return options;
+}
+
+std::map<std::string, std::string> describe_options(const ImitationOptions& options) {
+  std::map<std::string, std::string> values;
+  for (const Hyper& hyper : kHypers) values[hyper.name] = shortest(options.*hyper.value);
+  return values;
+}
+
+ImitationOptions parse_options(const std::map<std::string, std::string>& values) {
+  ImitationOptions options;
+  for (const Hyper& hyper : kHypers) {
+    const auto found = values.find(hyper.name);
+    if (found == values.end()) fail(Exit::kData, "the checkpoint has no option '", hyper.name, "'");
+    if (!parse(found->second, hyper, options.*hyper.value))
+      fail(Exit::kData, "option '", hyper.name, "': found ", quoted(found->second), ", ", expectation(hyper));
+  }
+  return options;
+}
+
+}  // namespace synpo

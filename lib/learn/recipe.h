@@ -1,0 +1,62 @@
+// The hyper-parameters of imitation learning, by name: for the command line, for the checkpoint, and as presets.
+#pragma once
+#include <map>
+#include <string>
+
+#include "base/options.h"
+#include "learn/steps.h"
+#include "nn/adam.h"
+#include "policy/policy.h"
+
+namespace synpo {
+
+struct ImitationOptions {
+  // What an update learns from.
+  double trajectories = 64;     // whole trajectories, where batch_states is 0
+  double batch_states = 0;      // single steps from running episodes
+  double memory = 20000;        // trajectories kept
+  double read = 1;              // trajectories read before an update
+  double fill = 1;              // trajectories read before the first update
+  double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = 300;
+  // The optimiser.
+  double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0.001;
+  double averaging = 0;         // decay of the averaged weights; 0: none
+  // The losses.
+  double reward_loss = 0.01, env_loss = 0.1, task_loss = 0.001;
+  // The network.
+  double embedding_sd = 0, normalise_input = 0, normalise_embeddings = 0;
+  double feature = 128, basis = 128, embedding = 128, hidden = 512;
+
+  LossWeights losses() const { return {reward_loss, env_loss, task_loss}; }
+  RunningOptions running_options() const;
+  PolicyShape shape(const GridSet& world) const;
+  AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay}; }
+  // Learning rate of update `update` (from 0) of `total`: linear warm-up, then constant or half a cosine down to final_rate.
+  double rate(int64_t update, int64_t total) const;
+};
+
+// "paper" is Algorithm 1 and the supplement to the letter; "fast" is the default. Throws kUsage for another name.
+ImitationOptions recipe(const std::string& name);
+constexpr char kDefaultRecipe[] = "fast";
+
+// Values given by name, over a recipe.
+class RecipeOptions {
+ public:
+  // Adds --recipe and an option for every hyper-parameter.
+  void add_to(Options& options);
+  // The recipe with what the command line changed. Throws kUsage for combinations that cannot be.
+  ImitationOptions result() const;
+  bool given() const { return !changes_.empty() || recipe_given_; }
+  const std::string& name() const { return recipe_; }
+
+ private:
+  std::string recipe_ = kDefaultRecipe;
+  bool recipe_given_ = false;
+  std::map<std::string, double> changes_;
+};
+
+std::map<std::string, std::string> describe_options(const ImitationOptions& options);
+// Throws kData for a name that is missing or a value that is none.
+ImitationOptions parse_options(const std::map<std::string, std::string>& values);
+
+}  // namespace synpo

@@ -1,0 +1,203 @@
+#include "learn/steps.h"
+
+#include <cstring>
+
+#include "base/error.h"
+
+namespace synpo {
+namespace {
+
+constexpr int kUnit = 32;  // samples of a shard
+constexpr size_t kPicture = size_t(kGridCells) * kHistory;
+constexpr uint64_t kRestartStream = uint64_t{1} << 32;  // keeps restarts and updates apart among the numbers of Purpose::kRollIn
+
+}  // namespace
+
+StepKind step_kind(const GridState& state, int label) {
+  if (state.steps == 0) return StepKind::kStart;
+  if (label == kPick) return StepKind::kPick;
+  return treasure_under_agent(state.now) >= 0 ? StepKind::kWalkOn : StepKind::kMove;
+}
+
+void Minibatch::resize(int size) {
+  pictures.resize(size * kPicture);
+  env.resize(size);
+  task.resize(size);
+  label.resize(size);
+  taken.resize(size);
+  reward.resize(size);
+  kind.resize(size);
+}
+
+void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,
+                          int64_t update, Minibatch& batch) {
+  Random random(seed, Purpose::kBatch, 0, uint64_t(update));
+  std::vector<const GridEpisode*> episodes(count);
+  std::vector<int> first(count + 1, 0);
+  for (int i = 0; i < count; ++i) {
+    episodes[i] = &memory[random.below(uint32_t(memory.size()))];
+    first[i + 1] = first[i] + int(episodes[i]->actions.size());
+  }
+  batch.resize(first[count]);
+  parallel.run(count, [&](int i, int) {
+    const GridEpisode& episode = *episodes[i];
+    const Maze& maze = world.maze(episode.pair.env);
+    const Task& task = world.tasks()[episode.pair.task];
+    GridState state = episode.start;
+    GridHistory history;
+    for (size_t t = 0; t < episode.actions.size(); ++t) {
+      const size_t at = first[i] + t;
+      history.push(state.now);
+      draw_history(maze, history, window, batch.pictures.data() + at * kPicture);
+      batch.env[at] = episode.pair.env;
+      batch.task[at] = episode.pair.task;
+      batch.label[at] = episode.labels[t];
+      batch.taken[at] = episode.actions[t];
+      batch.kind[at] = step_kind(state, episode.labels[t]);
+      batch.reward[at] = float(grid_step(maze, task, state, episode.actions[t]).reward_cents) / 100;
+    }
+  });
+}
+
+void RunningDraw::restart(const ReplayMemory& memory, Running& running, uint32_t number) {
+  Random random(seed_, Purpose::kRollIn, number, kRestartStream + running.restarts);
+  const uint32_t place = random.below(uint32_t(memory.size()));
+  const GridEpisode& episode = memory[place];
+  const uint32_t restarts = running.restarts + 1;
+  running = {episode.pair, episode.start, {}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started};
+  if (options_.fresh_starts) running.state = grid_reset(world_->maze(episode.pair.env), random);
+  running.history.push(running.state.now);
+}
+
+void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const {
+  if (running.following && memory.serial(running.place) == running.serial) {
+    const GridEpisode& episode = memory[running.place];
+    label = episode.labels[running.state.steps];
+    move = episode.actions[running.state.steps];
+  } else {
+    label = move = world_->planner(running.pair.env).action(world_->tasks()[running.pair.task], running.state);
+  }
+}
+
+void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
+  if (running.following) {
+    const bool there = memory.serial(running.place) == running.serial;
+    running.following = there && memory[running.place].actions[running.state.steps] == action;
+  }
+  const GridStep step = grid_step(world_->maze(running.pair.env), world_->tasks()[running.pair.task], running.state, action);
+  running.history.push(running.state.now);
+  if (step.ended() || running.state.steps >= options_.step_limit) restart(memory, running, number);
+}
+
+void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch) {
+  if (running_.empty()) running_.assign(std::max(options_.episodes, count), Running{});
+  batch.resize(count);
+  drawn_.resize(count);
+  moves_.resize(count);
+  for (int i = 0; i < count; ++i) {
+    drawn_[i] = uint32_t(next_);
+    next_ = (next_ + 1) % running_.size();
+  }
+  parallel.run(shard_count(count, kUnit), [&](int shard, int) {
+    const Range range = shard_range(count, kUnit, shard);
+    for (int i = range.begin; i < range.end; ++i) {
+      const uint32_t number = drawn_[i];
+      Running& running = running_[number];
+      Random random(seed_, Purpose::kRollIn, number, uint64_t(update));
+      int label, move;
+      if (!running.started) {
+        // Episodes that all began together would stay together: each goes some way with the expert first.
+        running.started = true;
+        restart(memory, running, number);
+        for (uint32_t skip = random.below(40); skip > 0; --skip) {
+          label_and_move(memory, running, label, move);
+          step(memory, running, number, move);
+        }
+      }
+      while (true) {
+        label_and_move(memory, running, label, move);
+        if (options_.noise > 0 && random.uniform() < options_.noise) move = int(random.below(kPick));
+        if (treasure_under_agent(running.state.now) >= 0 || random.uniform() < options_.balance) break;
+        step(memory, running, number, move);
+      }
+      moves_[i] = move;
+      batch.env[i] = running.pair.env;
+      batch.task[i] = running.pair.task;
+      batch.label[i] = label;
+      batch.taken[i] = move;
+      batch.kind[i] = step_kind(running.state, label);
+      GridState after = running.state;
+      const Maze& maze = world_->maze(running.pair.env);
+      batch.reward[i] = float(grid_step(maze, world_->tasks()[running.pair.task], after, move).reward_cents) / 100;
+      draw_history(maze, running.history, window, batch.pictures.data() + size_t(i) * kPicture);
+    }
+  });
+}
+
+void RunningDraw::advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update) {
+  for (size_t i = 0; i < drawn_.size(); ++i) {
+    const uint32_t number = drawn_[i];
+    Random random(seed_, Purpose::kNoise, number, uint64_t(update));
+    const bool own = options_.roll_in > 0 && random.uniform() < options_.roll_in;
+    step(memory, running_[number], number, own ? greedy[i] : moves_[i]);
+  }
+}
+
+void RunningDraw::save(SafeTensors& file, const std::string& prefix) const {
+  static_assert(std::is_trivially_copyable_v<Running>);
+  // Field by field, so that padding never reaches the file.
+  std::vector<int64_t> words;
+  for (const Running& r : running_) {
+    words.insert(words.end(), {r.pair.env, r.pair.task, r.state.picked, r.state.steps, int64_t(r.serial), r.place, r.restarts, r.following,
+                               r.started, r.history.count});
+    const auto add_frame = [&](const GridFrame& frame) {
+      words.push_back(frame.agent);
+      for (const uint8_t cell : frame.treasures) words.push_back(cell);
+    };
+    add_frame(r.state.now);
+    for (const GridFrame& frame : r.history.frames) add_frame(frame);
+  }
+  file.add(prefix + "running", {int64_t(words.size())}, words.data(), words.size());
+  const int64_t next = int64_t(next_);
+  file.add(prefix + "next", {1}, &next, 1);
+}
+
+void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const ReplayMemory& memory) {
+  constexpr size_t kWords = 10 + (1 + kHistory) * (1 + kTreasures);
+  const std::vector<int64_t> words = file.get<int64_t>(prefix + "running");
+  int64_t next = 0;
+  file.get(prefix + "next", &next, 1);
+  const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "running' is malformed"); };
+  if (words.size() % kWords != 0) bad();
+  running_.assign(words.size() / kWords, Running{});
+  if (next < 0 || (next > 0 && size_t(next) >= running_.size())) bad();
+  next_ = size_t(next);
+  const int64_t* at = words.data();
+  const auto take = [&](int64_t low, int64_t high) {
+    if (*at < low || *at > high) bad();
+    return *at++;
+  };
+  for (Running& r : running_) {
+    r.pair.env = int(take(0, world_->envs() - 1));
+    r.pair.task = int(take(0, world_->task_count() - 1));
+    r.state.picked = uint8_t(take(0, 1));
+    r.state.steps = uint16_t(take(0, kGridStepLimit - 1));
+    r.serial = uint64_t(take(0, INT64_MAX));
+    r.place = uint32_t(take(0, UINT32_MAX));
+    r.restarts = uint32_t(take(0, UINT32_MAX));
+    r.following = take(0, 1) != 0;
+    r.started = take(0, 1) != 0;
+    r.history.count = uint8_t(take(0, kHistory));
+    const auto take_frame = [&](GridFrame& frame) {
+      frame.agent = uint8_t(take(0, 255));
+      for (uint8_t& cell : frame.treasures) cell = uint8_t(take(0, 255));
+    };
+    take_frame(r.state.now);
+    for (GridFrame& frame : r.history.frames) take_frame(frame);
+    if (!r.started) continue;
+    if (r.place >= memory.size() || world_->maze(r.pair.env).wall[r.state.now.agent]) bad();
+    if (r.following && memory.serial(r.place) == r.serial && r.state.steps >= memory[r.place].actions.size()) bad();
+  }
+}
+
+}  // namespace synpo

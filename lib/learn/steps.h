@@ -1,0 +1,86 @@
+// The steps of a minibatch, drawn from the replay memory in one of two ways.
+//
+// TrajectoryDraw is Algorithm 1: whole trajectories, uniformly, all their steps.
+// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn; one starts as
+// a trajectory of the memory and follows it, or is driven off it by random moves and the learner's own greedy moves, where the
+// planner then gives the label. Steps on which the agent stands on a treasure are always taken, others with a probability.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "learn/memory.h"
+#include "world/view.h"
+
+namespace synpo {
+
+// By what a step asks of the policy: the first of an episode; to pick; to walk on over a treasure; to move.
+enum class StepKind : uint8_t { kMove, kPick, kWalkOn, kStart };
+constexpr int kStepKinds = 4;
+StepKind step_kind(const GridState& state, int label);
+
+// A minibatch under construction; arrays grow as needed.
+struct Minibatch {
+  std::vector<uint8_t> pictures;  // [size, 16, 16, history]
+  std::vector<int> env, task, label, taken;
+  std::vector<float> reward;
+  std::vector<StepKind> kind;
+  int size() const { return int(env.size()); }
+  void resize(int size);
+};
+
+class TrajectoryDraw {
+ public:
+  // `count` trajectories with all their steps; update `update` of a run with this seed always draws the same.
+  static void draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed, int64_t update,
+                   Minibatch& batch);
+};
+
+struct RunningOptions {
+  int episodes = 8192;      // that run side by side
+  double balance = 1;       // probability of taking a step that is not on a treasure
+  double roll_in = 0;       // probability of the learner's own greedy move behind a taken step
+  double noise = 0;         // probability of a random move otherwise
+  bool fresh_starts = false;  // agent and treasures are placed anew; the memory then gives the pair alone
+  int step_limit = kGridStepLimit;
+};
+
+class RunningDraw {
+ public:
+  RunningDraw(const GridSet& world, const RunningOptions& options, uint64_t seed) : world_(&world), options_(options), seed_(seed) {}
+
+  // The next `count` running episodes, each at its next step to be taken.
+  void draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch);
+  // Moves the episodes of the last draw() on, given the learner's greedy actions [count].
+  void advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update);
+
+  void save(SafeTensors& file, const std::string& prefix) const;
+  // Throws kData for what no save() wrote beside this memory.
+  void load(const SafeTensors& file, const std::string& prefix, const ReplayMemory& memory);
+
+ private:
+  struct Running {
+    EnvTask pair;
+    GridState state;
+    GridHistory history;
+    uint64_t serial;   // of the trajectory that is followed
+    uint32_t place;    // in the memory
+    uint32_t restarts;
+    bool following;    // actions so far are the trajectory's
+    bool started;
+  };
+  void restart(const ReplayMemory& memory, Running& running, uint32_t number);
+  void label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const;
+  // One step; restarts where the episode ends.
+  void step(const ReplayMemory& memory, Running& running, uint32_t number, int action);
+
+  const GridSet* world_;
+  RunningOptions options_;
+  uint64_t seed_;
+  std::vector<Running> running_;
+  size_t next_ = 0;                     // the episode whose turn it is
+  std::vector<uint32_t> drawn_;         // of the last draw()
+  std::vector<int> moves_;              // what those would do without the learner
+};
+
+}  // namespace synpo

@@ -1,0 +1,41 @@
+// The stream of trajectories that a trainer reads: parsed, replayed, held against the seen set, hashed.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/io.h"
+#include "learn/episode.h"
+
+namespace synpo {
+
+class TrajectoryStream {
+ public:
+  // Trajectories of pairs outside `seen` are refused (an empty list takes all). The window of the first is that of all; -1 lets the first
+  // decide.
+  TrajectoryStream(Input& input, const GridSet& world, std::vector<EnvTask> seen, int window = -1);
+
+  // The next trajectory; nothing at the end. Errors are kData with the line.
+  std::optional<GridEpisode> next();
+  // Passes over `lines` lines without parsing and checks that they are those that `hash` was made of (kData).
+  void skip(uint64_t lines, uint64_t hash);
+
+  uint64_t lines() const { return lines_; }
+  uint64_t hash() const { return hash_.value(); }
+  int window() const { return window_; }
+  bool ended() const { return ended_; }
+
+ private:
+  Input& input_;
+  const GridSet& world_;
+  std::vector<EnvTask> seen_;
+  std::vector<bool> allowed_;  // by pair number
+  int window_;
+  bool ended_ = false;
+  uint64_t lines_ = 0;
+  Hash hash_;
+  std::string line_;
+};
+
+}  // namespace synpo

@@ -1,0 +1,56 @@
+#include "nn/dense.h"
+
+#include <algorithm>
+
+#include "nn/gemm.h"
+#include "nn/norm.h"
+
+namespace synpo {
+namespace {
+constexpr int kRows = 64;  // of a shard
+}
+
+template <class T>
+void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* b, bool relu, T* y) {
+  parallel.run(shard_count(rows, kRows), [&](int shard, int) {
+    const Range range = shard_range(rows, kRows, shard);
+    T* to = y + size_t(range.begin) * out;
+    gemm(Op::kAsIs, Op::kAsIs, range.size(), out, in, x + size_t(range.begin) * in, in, w, out, to, out);
+    for (int r = 0; r < range.size(); ++r, to += out)
+      for (int c = 0; c < out; ++c) {
+        const T value = to[c] + (b ? b[c] : T(0));
+        to[c] = relu ? std::max(value, T(0)) : value;
+      }
+  });
+}
+
+template <class T>
+void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* relu_y, T* dy, T* dx, bool add_dx,
+                    T* dw, T* db) {
+  parallel.run(shard_count(rows, kRows), [&](int shard, int) {
+    const Range range = shard_range(rows, kRows, shard);
+    T* d = dy + size_t(range.begin) * out;
+    if (relu_y) relu_mask(d, relu_y + size_t(range.begin) * out, size_t(range.size()) * out);
+    if (dx) gemm(Op::kAsIs, Op::kTransposed, range.size(), in, out, d, out, w, out, dx + size_t(range.begin) * in, in, add_dx);
+  });
+  const int block = std::max(16, shard_count(in, 8));
+  parallel.run(shard_count(in, block) + 1, [&](int shard, int) {
+    if (shard == 0) {
+      if (db)
+        for (int r = 0; r < rows; ++r)
+          for (int c = 0; c < out; ++c) db[c] += dy[size_t(r) * out + c];
+      return;
+    }
+    const Range range = shard_range(in, block, shard - 1);
+    gemm(Op::kTransposed, Op::kAsIs, range.size(), out, rows, x + range.begin, in, dy, out, dw + size_t(range.begin) * out, out, true);
+  });
+}
+
+#define SYNPO_INSTANTIATE(T)                                                                                   \
+  template void dense_forward(Parallel&, int, int, int, const T*, const T*, const T*, bool, T*);               \
+  template void dense_backward(Parallel&, int, int, int, const T*, const T*, const T*, T*, T*, bool, T*, T*);
+SYNPO_INSTANTIATE(float)
+SYNPO_INSTANTIATE(double)
+#undef SYNPO_INSTANTIATE
+
+}  // namespace synpo

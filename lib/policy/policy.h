@@ -1,0 +1,78 @@
+// What every method is to the learner and the evaluator: parameters in one flat array, a training step, and inference.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "nn/layout.h"
+
+namespace synpo {
+
+// Sizes of a policy (supplement, Section 4.1). The defaults are the paper's for GridWorld.
+struct PolicyShape {
+  std::vector<int> channels = {32, 64, 128, 256};  // of the four stages of Table 2
+  int envs = 20, tasks = 20, actions = 5;
+  int feature = 128;    // d, of psi(s)
+  int basis = 128;      // K
+  int embedding = 128;  // of e_env and e_task
+  int hidden = 512;     // of alpha, beta, f_env and f_task
+  bool normalise_input = false;       // per-channel batch normalisation without affine, in place of fixed scaling
+  bool normalise_embeddings = false;  // embeddings are scaled to length sqrt(embedding) before use
+};
+
+struct InitOptions {
+  uint64_t seed = 1;
+  double embedding_sd = 0;  // embeddings are drawn from N(0, sd^2); 0: Xavier uniform
+};
+
+// The weights lambda of the auxiliary losses (supplement, Section 2).
+struct LossWeights {
+  double reward = 0.01, env = 0.1, task = 0.001;
+};
+
+// Means over the steps of a batch; `total` is weighted.
+struct Losses {
+  double total = 0, policy = 0, reward = 0, env = 0, task = 0;
+};
+
+// Steps to learn from. Pictures are colour indices [size, 16, 16, history], oldest first; the others are [size].
+template <class T>
+struct StepBatch {
+  int size = 0;
+  const uint8_t* pictures = nullptr;
+  const int* env = nullptr;
+  const int* task = nullptr;
+  const int* label = nullptr;  // the expert's action: imitation, disentanglement
+  const int* taken = nullptr;  // the action taken, whose reward is to be predicted
+  const T* reward = nullptr;
+};
+
+template <class T>
+class Policy {
+ public:
+  virtual ~Policy() = default;
+  const Layout& parameters() const { return parameters_; }
+  const Layout& statistics() const { return statistics_; }  // running statistics of batch normalisation
+
+  virtual void initialise(const InitOptions& options, T* parameters, T* statistics) const = 0;
+
+  // Forward and backward on a batch. `gradient` is overwritten; `logits` [size, actions] receives the policy's scores. Running
+  // statistics move. Bits do not depend on the number of threads.
+  virtual Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
+                      T* gradient, T* logits) = 0;
+
+  // Takes over parameters for infer(). `pairs` are the (env, task) that will be asked for, numbered as they come.
+  virtual void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
+                                 const std::vector<std::pair<int, int>>& pairs) = 0;
+  // Scores [size, actions] of states, state i of pair number pair[i], with frozen statistics. One thread's part: `thread` picks
+  // its scratch memory. At most kInferenceUnit states.
+  static constexpr int kInferenceUnit = 32;
+  virtual void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) = 0;
+
+ protected:
+  Layout parameters_, statistics_;
+};
+
+}  // namespace synpo

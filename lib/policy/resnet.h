@@ -1,0 +1,73 @@
+// The state feature psi(s) of GridWorld: the residual network of Table 2.
+//
+// Four stages of two basic blocks (3x3 conv, norm, ReLU, 3x3 conv, norm, plus the shortcut, ReLU), first strides 2 2 2 1, then a dense layer.
+// A 1x1 convolution with normalisation stands on a shortcut that changes shape.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "nn/conv.h"
+#include "nn/layout.h"
+#include "nn/norm.h"
+#include "world/view.h"
+
+namespace synpo {
+
+template <class T>
+class ResNet {
+ public:
+  // Appends its tensors to the two layouts, under `encoder.`.
+  ResNet(const std::vector<int>& channels, int feature, bool normalise_input, Layout& parameters, Layout& statistics);
+
+  // Convolutions as PyTorch does by default, the dense layer Xavier uniform, norms 1 and 0.
+  void initialise(uint64_t seed, T* parameters, T* statistics) const;
+
+  // psi [n, feature] from pictures [n, 16, 16, history] of colour indices. Keeps what backward() needs; memory grows with n.
+  void forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi);
+  // gradient += ...; dpsi is the gradient of the last forward()'s psi.
+  void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient);
+
+  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics);
+  // One thread's part, n at most Policy::kInferenceUnit.
+  void infer(int thread, int n, const uint8_t* pictures, T* psi);
+
+  // Multiply-adds of one sample's forward pass, as executed.
+  size_t multiply_adds() const;
+
+ private:
+  struct NormPlace {
+    size_t scale, shift, mean, variance;
+  };
+  struct Block {
+    std::vector<Conv<T>> convs;  // conv1, conv2 and, where the shape changes, the shortcut's
+    size_t weights[3];
+    NormPlace places[3];
+    BatchNorm<T> norms[3];
+    std::vector<T> frozen[3];  // scale, then shift, for inference
+    Buffer<T> z[3], y1, y;     // outputs of the convolutions; after the inner and the last ReLU
+    bool has_shortcut() const { return convs.size() == 3; }
+  };
+  void expand(int n, const uint8_t* pictures, const T* mean, const T* inverse_sd, T* x) const;
+  void normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics);
+  void prepare_convs(Parallel& parallel, const T* parameters);
+  void finish_block(Block& block, Range samples);
+  const T* block_input(size_t b) const { return b == 0 ? input_.data() : blocks_[b - 1].y.data(); }
+
+  int feature_;
+  bool normalise_input_;
+  std::vector<Block> blocks_;
+  size_t fc_weight_, fc_bias_, input_mean_ = 0, input_variance_ = 0;
+  size_t flat_ = 0;       // inputs of the dense layer
+  size_t largest_ = 0;    // values of the largest picture behind the first convolution
+  int n_ = 0;
+  Buffer<T> input_, d_, dz_, dy1_, dshortcut_;
+  std::vector<T> input_shift_, input_scale_;  // per channel of the input
+  typename Conv<T>::Workspace work_;
+  std::vector<T> fc_;     // inference: weight, then bias
+};
+
+extern template class ResNet<float>;
+extern template class ResNet<double>;
+
+}  // namespace synpo

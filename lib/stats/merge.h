@@ -1,0 +1,25 @@
+// Matrices of shards and seeds put together, every episode counted once.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "format/matrix.h"
+
+namespace synpo {
+
+struct MatrixSource {
+  std::string name;  // for messages
+  Matrix matrix;     // as read: row i stood in line i + 2
+};
+
+// One matrix of all rows. Within a run, eval_seed and pair, rows whose episodes follow one another are added up, rows with a gap
+// between them or with different values in unknown columns stay apart, and rows that share an episode are refused (kData, both
+// places named). Rows of one run that disagree about world, window, method, seed or updates, or about seen or part of a pair, are
+// refused as well. Pairs keep the order of their first appearance; a pair's rows are sorted by eval_seed and first episode, so the
+// sums do not depend on the order of the sources. Unknown columns are united; a source without one has empty fields there.
+Matrix merge_matrices(std::vector<MatrixSource> sources);
+
+// a + b, exactly where both are whole hundredths, as GridWorld's rewards are.
+double add_rewards(double a, double b);
+
+}  // namespace synpo

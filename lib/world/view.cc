@@ -1,0 +1,49 @@
+#include "world/view.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+
+namespace synpo {
+
+const std::array<Rgb, kGridColours> kPalette = {{
+    {0, 0, 0},        // unseen
+    {50, 50, 50},     // floor
+    {110, 80, 50},    // wall
+    {255, 255, 255},  // agent
+    {255, 0, 0},      // R
+    {0, 0, 255},      // B
+    {0, 255, 0},      // G
+    {255, 170, 0},    // O
+    {170, 0, 255},    // P
+}};
+
+void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]) {
+  std::memset(colours, kUnseen, kGridCells);
+  // A blind agent (radius 0) sees nothing but itself in its window of one cell.
+  const int row = frame.agent / kGridSide, column = frame.agent % kGridSide;
+  for (int r = std::max(0, row - radius); r <= std::min(kGridSide - 1, row + radius); ++r)
+    for (int c = std::max(0, column - radius); c <= std::min(kGridSide - 1, column + radius); ++c)
+      colours[r * kGridSide + c] = maze.wall[r * kGridSide + c] ? kWall : kFloor;
+  for (int i = 0; i < kTreasures; ++i)
+    if (frame.treasures[i] != kPicked) colours[frame.treasures[i]] = uint8_t(kFirstTreasure + i);
+  colours[frame.agent] = kAgent;
+}
+
+void draw_history(const Maze& maze, const GridHistory& history, int radius, uint8_t* pictures) {
+  static_assert(kHistory == 4);
+  uint8_t colours[kHistory][kGridCells];
+  const int missing = kHistory - history.count;
+  std::memset(colours, kUnseen, size_t(missing) * kGridCells);
+  for (int f = missing; f < kHistory; ++f) draw_view(maze, history.frames[f], radius, colours[f]);
+  for (int cell = 0; cell < kGridCells; ++cell)
+    for (int f = 0; f < kHistory; ++f) pictures[cell * kHistory + f] = colours[f][cell];
+}
+
+void GridHistory::push(const GridFrame& frame) {
+  std::copy(frames.begin() + 1, frames.end(), frames.begin());
+  frames.back() = frame;
+  count = uint8_t(std::min(count + 1, kHistory));
+}
+
+}  // namespace synpo

@@ -1,0 +1,143 @@
+// synpo-render: matrices, mazes and views as PNG pictures.
+#include <algorithm>
+
+#include "base/error.h"
+#include "base/io.h"
+#include "base/options.h"
+#include "draw/agent_view.h"
+#include "draw/heatmap.h"
+#include "draw/maze_picture.h"
+#include "format/matrix.h"
+#include "world/maze.h"
+#include "world/task.h"
+
+using namespace synpo;
+
+namespace {
+
+// What every command takes: where the picture goes, its size and its font.
+struct PictureOptions {
+  std::string output = "-", font;
+  bool force = false;
+  double scale = 2;
+
+  void add_to(Options& options) {
+    options.section("picture")
+        .text('o', "output", "FILE", "write the PNG to FILE", output)
+        .flag('f', "force", "write to a terminal too", force)
+        .real(0, "scale", "X", "pixels per point (a cell's text is 9 points high)", scale, 0.25, 16)
+        .text(0, "font", "FILE", "TrueType font instead of DejaVu Sans", font);
+  }
+};
+
+std::vector<Maze> mazes_of(const std::string& world) {
+  if (world == "gridworld") return builtin_mazes();
+  if (world.starts_with("gridworld:")) return load_mazes(world.substr(10));
+  fail(Exit::kUsage, "unknown world ", quoted(world), ": expected gridworld or gridworld:DIR");
+}
+
+const Maze& find_maze(const std::vector<Maze>& mazes, const std::string& name) {
+  const auto found = std::find_if(mazes.begin(), mazes.end(), [&](const Maze& maze) { return maze.name == name; });
+  if (found == mazes.end()) fail(Exit::kUsage, "no maze ", quoted(name), " in this world");
+  return *found;
+}
+
+int find_task(const std::string& name) {
+  for (size_t i = 0; i < grid_tasks().size(); ++i)
+    if (grid_tasks()[i].name() == name) return int(i);
+  fail(Exit::kUsage, "no task ", quoted(name), ": expected two of R B G O P, such as R-B");
+}
+
+void finish(Output& output, const Canvas& canvas) {
+  output.write(canvas.png());
+  output.finish();
+}
+
+int heatmap(int argc, char** argv) {
+  HeatmapStyle style;
+  PictureOptions picture;
+  std::string method, by = "seen";
+  bool no_values = false;
+  Options options("synpo-render heatmap", "[OPTION]... [MATRIX]",
+                  "Draws a success matrix: tasks down, environments across, darker is better.");
+  options.text(0, "title", "TEXT", "title above the picture", style.title)
+      .text(0, "method", "NAME", "only the rows of this method", method)
+      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]",
+            [&](const std::string& name) { style.scheme = find_scheme(name).name; })
+      .call(0, "by", "COLUMN", "what the colours tell apart: seen or part [seen]",
+            [&](const std::string& column) {
+              if (column != "seen" && column != "part") throw std::invalid_argument("expected seen or part");
+              by = column;
+            })
+      .flag(0, "no-values", "leave the rates out of the cells", no_values)
+      .real(0, "cell", "POINTS", "side of a cell; 0: by the size of the matrix", style.cell_pt, 0, 200);
+  picture.add_to(options);
+  const auto operands = options.parse(argc, argv, 0, 1);
+  style.values = !no_values;
+  style.scale = picture.scale;
+  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  const Font font(picture.font);
+  Input input(operands.empty() ? "-" : operands[0]);
+  finish(output, draw_heatmap(pool_matrix(read_matrix(input), method, by == "part"), style, font));
+  return 0;
+}
+
+int map(int argc, char** argv) {
+  MapStyle style;
+  PictureOptions picture;
+  std::string world = "gridworld";
+  Options options("synpo-render map", "[OPTION]... [NAME]...", "Draws mazes: the ones named, else all, as a grid with their names.");
+  options.text('w', "world", "WORLD", "gridworld, or gridworld:DIR for the map files of a folder", world)
+      .text(0, "title", "TEXT", "title above the picture", style.title)
+      .integer(0, "columns", "N", "mazes in a row; 0: a grid a little wider than high", style.columns, 0, 1000);
+  picture.add_to(options);
+  const auto names = options.parse(argc, argv, 0, 1000);
+  style.scale = picture.scale;
+  std::vector<Maze> mazes = mazes_of(world);
+  if (!names.empty()) {
+    std::vector<Maze> chosen;
+    for (const std::string& name : names) chosen.push_back(find_maze(mazes, name));
+    mazes = std::move(chosen);
+  }
+  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  finish(output, draw_maps(mazes, style, Font(picture.font)));
+  return 0;
+}
+
+int view(int argc, char** argv) {
+  ViewStyle style;
+  PictureOptions picture;
+  std::string world = "gridworld", env, task = "R-B";
+  int64_t seed = 0, episode = 0, steps = 0, window = style.radius;
+  Options options("synpo-render view", "[OPTION]...", "Draws a moment of an expert's episode and what the agent sees of it.");
+  options.text('w', "world", "WORLD", "gridworld, or gridworld:DIR for the map files of a folder", world)
+      .text('e', "env", "NAME", "maze; none: the world's first", env)
+      .text('t', "task", "NAME", "task", task)
+      .integer('s', "seed", "N", "seed of the start", seed, 0, INT64_MAX)
+      .integer(0, "episode", "N", "number of the episode under this seed", episode, 0, UINT32_MAX)
+      .integer(0, "steps", "N", "steps of the expert from the start", steps, 0, kGridStepLimit)
+      .integer(0, "window", "R", "radius of what the agent sees of the maze; 0: blind", window, 0, kGridSide - 1)
+      .flag(0, "history", "the four pictures of the network's input too", style.history)
+      .text(0, "title", "TEXT", "title instead of maze, task and step", style.title);
+  picture.add_to(options);
+  options.parse(argc, argv);
+  style.scale = picture.scale;
+  style.radius = int(window);
+  const std::vector<Maze> mazes = mazes_of(world);
+  const Maze& maze = env.empty() ? mazes.front() : find_maze(mazes, env);
+  const int task_index = find_task(task);
+  const uint64_t pair = uint64_t(&maze - mazes.data()) * grid_tasks().size() + uint64_t(task_index);
+  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  const Random random(uint64_t(seed), Purpose::kEpisodeStart, pair, uint64_t(episode));
+  finish(output, draw_agent_view(expert_moment(maze, grid_tasks()[task_index], random, steps), style, Font(picture.font)));
+  return 0;
+}
+
+int body(int argc, char** argv) {
+  return run_commands("synpo-render", "Draws success matrices, mazes and views as PNG.",
+                      {{"heatmap", "a success matrix", heatmap}, {"map", "mazes", map}, {"view", "what the agent sees", view}}, argc, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return run_tool("synpo-render", argc, argv, body); }

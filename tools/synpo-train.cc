@@ -1,0 +1,164 @@
+// Imitation learning: expert trajectories on stdin, a checkpoint on stdout.
+#include <sys/resource.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "base/options.h"
+#include "base/progress.h"
+#include "base/signals.h"
+#include "learn/imitate.h"
+
+using namespace synpo;
+
+namespace {
+
+struct Settings {
+  std::string world = "gridworld", pairs, method = "synpo", output = "-", save, resume, init, log, time;
+  int64_t updates = 0, seed = 1, threads = 0, every = 1000, expect = 0, report = 100, evaluate_every = 0, evaluate_episodes = 100;
+  bool strip = false, force = false, quiet = false;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+Checkpoint load(const std::string& path) {
+  Input input(path);
+  return read_checkpoint(input);
+}
+
+std::string percent(double part) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * part);
+  return std::isnan(part) ? "-" : text;
+}
+
+// Updates until the total is reached or a signal comes; returns the signal, or 0.
+int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, double limit_s) {
+  RunLog log(settings.log);
+  Progress progress("synpo-train", "updates", uint64_t(run.total_updates()), settings.quiet);
+  const auto start = std::chrono::steady_clock::now();
+  auto reported = start;
+  const int64_t first = run.updates();
+  const int64_t measured = std::max<int64_t>(1, std::min<int64_t>(50, run.options().warm_up > 0 ? int64_t(run.options().warm_up) : run.options().cosine ? 1 : 50));
+  std::string note;
+  while (run.updates() < run.total_updates() && stop_signal() == 0) {
+    if (!run.update(stream)) fail(Exit::kData, "standard input has no trajectory");
+    if (stream.ended() && settings.expect > 0 && stream.lines() < uint64_t(settings.expect))
+      fail(Exit::kData, "the stream ended after ", stream.lines(), " trajectories, expected ", settings.expect);
+    const int64_t done = run.updates();
+    if (limit_s > 0 && done - first == measured) {
+      const double elapsed = seconds_since(start);
+      run.set_total_updates(first + std::max(measured, int64_t(limit_s / elapsed * measured)));
+      progress.set_total(uint64_t(run.total_updates()));
+      if (!settings.quiet)
+        std::fprintf(stderr, "synpo-train: %s make %lld updates; -n %lld repeats this run\n", settings.time.c_str(),
+                     (long long)run.total_updates(), (long long)run.total_updates());
+    }
+    const bool last = done == run.total_updates();
+    const bool evaluates = settings.evaluate_every > 0 && (done % settings.evaluate_every == 0 || last);
+    if (done % settings.report == 0 || last || evaluates) {
+      RunLogRow row = run.take_report();
+      row.seconds = seconds_since(start);
+      row.states_per_s /= seconds_since(reported);
+      note = short_count(row.states_per_s) + " states/s, loss " + std::to_string(row.loss).substr(0, 5) + ", right: move " + percent(row.right[0]) +
+             " pick " + percent(row.right[1]) + " walk on " + percent(row.right[2]) + " start " + percent(row.right[3]);
+      if (evaluates) {
+        row.evaluation = run.evaluate_sample(int(settings.evaluate_episodes));
+        if (!settings.quiet)
+          std::fprintf(stderr, "synpo-train: update %lld: success %s seen, %s unseen\n", (long long)done,
+                       percent(row.evaluation->seen_success).c_str(), percent(row.evaluation->unseen_success).c_str());
+      }
+      log.write(row);
+      reported = std::chrono::steady_clock::now();
+    }
+    if (!settings.save.empty() && done % settings.every == 0 && !last) write_file(settings.save, format_checkpoint(run.checkpoint(true)));
+    progress.update(uint64_t(done), note);
+  }
+  return stop_signal();
+}
+
+int body(int argc, char** argv) {
+  Settings s;
+  RecipeOptions hyper;
+  Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
+                  "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
+  options.integer('n', "count", "N", "updates in all", s.updates, 0, INT64_MAX)
+      .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones", s.time)
+      .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)", s.pairs)
+      .text('m', "method", "NAME", "method: synpo", s.method)
+      .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
+      .text('w', "world", "WORLD", "gridworld, or gridworld:DIR", s.world)
+      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
+      .text('o', "output", "FILE", "write the checkpoint to FILE", s.output)
+      .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and on SIGINT or SIGTERM", s.save)
+      .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
+      .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
+      .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)
+      .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX)
+      .text(0, "log", "FILE", "run log, TSV", s.log)
+      .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
+      .integer(0, "evaluate-every", "N", "updates between two evaluations on sampled pairs; 0: none", s.evaluate_every, 0, INT64_MAX)
+      .integer(0, "evaluate-episodes", "N", "episodes of such an evaluation, for seen and for unseen pairs", s.evaluate_episodes, 1, 1000000)
+      .flag(0, "strip", "leave out of the checkpoint what only training needs", s.strip)
+      .flag('f', "force", "write the checkpoint to a terminal", s.force)
+      .flag('q', "quiet", "no progress", s.quiet);
+  hyper.add_to(options);
+  options.parse(argc, argv);
+  double limit_s = 0;
+  if (!s.time.empty()) try {
+      limit_s = parse_seconds(s.time);
+    } catch (const std::invalid_argument& error) {
+      fail(Exit::kUsage, "option --time: found ", quoted(s.time), ", ", error.what());
+    }
+  const bool resumes = !s.resume.empty();
+  if (resumes && (hyper.given() || !s.init.empty() || options.given("pairs") || options.given("method") || options.given("seed") || options.given("world")))
+    fail(Exit::kUsage, "--resume takes everything but the limit from the checkpoint");
+  if (limit_s > 0 && options.given("count")) fail(Exit::kUsage, "-n and --time exclude each other");
+  if (!resumes && limit_s == 0 && !options.given("count")) fail(Exit::kUsage, "how long? -n UPDATES or --time LIMIT");
+  catch_stop_signals();
+
+  Parallel parallel(int(s.threads));
+  const Checkpoint from = resumes ? load(s.resume) : Checkpoint();
+  const GridSet world = resumes ? world_of(from) : GridSet::open(s.world);
+  std::vector<EnvTask> seen;
+  if (!s.pairs.empty()) {
+    Input input(s.pairs);
+    seen = resolve_pairs(world, read_pairs(input), true);
+    if (seen.empty()) fail(Exit::kData, "no pair with seen = 1 in '", s.pairs, "'");
+  }
+  std::unique_ptr<Imitation> run;
+  if (resumes) {
+    run = std::make_unique<Imitation>(world, parallel, from);
+  } else {
+    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(), seen, uint64_t(s.seed));
+    if (!s.init.empty()) run->take_weights(load_model(load(s.init), world));
+  }
+  if (options.given("count")) run->set_total_updates(s.updates);
+  if (limit_s > 0) run->set_total_updates(INT64_MAX);
+
+  int signal = 0;
+  if (run->updates() < run->total_updates()) {
+    Input input("-");
+    TrajectoryStream stream(input, world, run->allowed(), run->window());
+    stream.skip(run->stream_lines(), run->stream_hash());
+    signal = train(*run, stream, s, limit_s);
+  }
+  const bool unfinished = run->updates() < run->total_updates();
+  if (!s.save.empty()) write_file(s.save, format_checkpoint(run->checkpoint(true)));
+  write_file(s.output, format_checkpoint(run->checkpoint(!s.strip)), Output::Kind::kBinary, s.force);
+  rusage usage;
+  getrusage(RUSAGE_SELF, &usage);
+  if (!s.quiet)
+    std::fprintf(stderr, "synpo-train: %s%lld updates, %s states, peak memory %.0f MB\n", unfinished ? "stopped: " : "",
+                 (long long)run->updates(), short_count(double(run->model().states)).c_str(), usage.ru_maxrss / 1024.0);
+  return unfinished && signal ? 128 + signal : 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return run_tool("synpo-train", argc, argv, body); }
