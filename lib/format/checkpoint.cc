@@ -103,7 +103,8 @@ Checkpoint read_checkpoint(Input& input) {
 std::string format_checkpoint(const Checkpoint& checkpoint) {
   SafeTensors file = checkpoint.file;
   file.metadata.clear();
-  for (const auto& [key, value] : to_json(checkpoint).items()) file.metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  const OrderedJson metadata = to_json(checkpoint);
+  for (const auto& [key, value] : metadata.items()) file.metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
   return format_safetensors(file);
 }
 
