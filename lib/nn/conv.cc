@@ -54,9 +54,9 @@ Conv<T>::Conv(int side, int in, int out, int kernel, int stride, Method method)
 }
 
 template <class T>
-void Conv<T>::prepare(Parallel& parallel, const T* weight) {
+void Conv<T>::prepare(Parallel& parallel, const T* weight, bool training) {
   const size_t plane = size_t(in_) * out_;
-  T* to = weight_.grow(size_t(products_) * depth_ * out_);
+  T* to = transformed() ? weight_.grow(size_t(products_) * depth_ * out_) : nullptr;
   const auto transform = [&]<class A>(A) {
     parallel.run(shard_count(in_, 16), [&](int shard, int) {
       const Range range = shard_range(in_, 16, shard);
@@ -71,9 +71,18 @@ void Conv<T>::prepare(Parallel& parallel, const T* weight) {
         });
     });
   };
-  if (form_ == Form::kWinograd) return transform(Winograd43{});
-  if (form_ == Form::kToeplitz) return transform(Toeplitz2{});
-  std::memcpy(to, weight, weight_size() * sizeof(T));
+  if (form_ == Form::kWinograd) transform(Winograd43{});
+  if (form_ == Form::kToeplitz) transform(Toeplitz2{});
+  forward_.resize(products_);
+  backward_.resize(products_);
+  parallel.run(products_ * (training ? 2 : 1), [&](int shard, int) {
+    const int p = shard % products_;
+    const T* from = transformed() ? to + size_t(p) * depth_ * out_ : weight;
+    if (shard < products_)
+      forward_[p].pack(Op::kAsIs, depth_, out_, from, out_);
+    else
+      backward_[p].pack(Op::kTransposed, out_, depth_, from, out_);
+  });
 }
 
 template <class T>
@@ -219,14 +228,13 @@ void Conv<T>::scatter_adjoint(int samples, const T* dy, T* doutputs, size_t prod
 template <class T>
 void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
   const int rows = samples * rows_;
-  if (form_ == Form::kPlain) return gemm(Op::kAsIs, Op::kAsIs, rows, out_, depth_, x, depth_, weight_.data(), out_, y, out_);
+  if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, x, depth_, forward_[0], y, out_);
   const size_t inputs_size = size_t(products_) * rows * depth_;
   T* inputs = scratch.grow(inputs_size + (transformed() ? size_t(products_) * rows * out_ : 0));
   T* outputs = transformed() ? inputs + inputs_size : y;
   gather(samples, x, inputs, rows);
   for (int p = 0; p < products_; ++p)
-    gemm(Op::kAsIs, Op::kAsIs, rows, out_, depth_, inputs + size_t(p) * rows * depth_, depth_,
-         weight_.data() + size_t(p) * depth_ * out_, out_, outputs + size_t(p) * rows * out_, out_);
+    gemm(Op::kAsIs, rows, inputs + size_t(p) * rows * depth_, depth_, forward_[p], outputs + size_t(p) * rows * out_, out_);
   if (transformed()) scatter(samples, outputs, rows, y);
 }
 
@@ -242,7 +250,7 @@ void Conv<T>::backward(Parallel& parallel, int samples, const T* x, const T* dy,
   work.scratch.resize(std::max<size_t>(work.scratch.size(), parallel.threads()));
   const size_t plane = size_t(depth_) * out_;
   T* dfactors = transformed() ? work.dweight.grow(products_ * plane) : dweight;
-  const int blocks = products_ == 1 ? std::min(8, shard_count(depth_, 16)) : depth_ >= 128 ? 2 : 1;
+  const int blocks = products_ == 1 ? shard_count(depth_, 48) : depth_ >= 128 ? 2 : 1;
   const int block_size = shard_count(depth_, blocks);
 
   for (int begin = 0; begin < samples; begin += kSlab) {
@@ -261,13 +269,10 @@ void Conv<T>::backward(Parallel& parallel, int samples, const T* x, const T* dy,
         scatter_adjoint(range.size(), slab_dy + range.begin * y_size(), work.outputs.data() + first * out_, slab_rows);
       if (!dx) return;
       T* to = dx + (begin + range.begin) * x_size();
-      if (plain)
-        return gemm(Op::kAsIs, Op::kTransposed, rows, depth_, out_, outputs + first * out_, out_, weight_.data(), out_, to,
-                    depth_, add_dx);
+      if (plain) return gemm(Op::kAsIs, rows, outputs + first * out_, out_, backward_[0], to, depth_, add_dx);
       T* dinputs = work.scratch[thread].grow(size_t(products_) * rows * depth_);
       for (int p = 0; p < products_; ++p)
-        gemm(Op::kAsIs, Op::kTransposed, rows, depth_, out_, outputs + (p * slab_rows + first) * out_, out_,
-             weight_.data() + p * plane, out_, dinputs + size_t(p) * rows * depth_, depth_);
+        gemm(Op::kAsIs, rows, outputs + (p * slab_rows + first) * out_, out_, backward_[p], dinputs + size_t(p) * rows * depth_, depth_);
       if (!add_dx) std::memset(static_cast<void*>(to), 0, range.size() * x_size() * sizeof(T));
       gather_adjoint(range.size(), dinputs, rows, to);
     });

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "nn/buffer.h"
+#include "nn/gemm.h"
 
 namespace synpo {
 
@@ -24,8 +25,8 @@ class Conv {
   // Multiply-adds that one sample's forward pass executes in matrix products.
   size_t multiply_adds() const { return size_t(products_) * rows_ * depth_ * out_; }
 
-  // Takes the weight over; to be called after every change of it.
-  void prepare(Parallel& parallel, const T* weight);
+  // Takes the weight over; to be called after every change of it. Without `training`, for forward() alone.
+  void prepare(Parallel& parallel, const T* weight, bool training = true);
 
   // Samples that are worth passing to forward() at once.
   int unit() const { return side_out_ > 4 ? 16 : 32; }
@@ -65,6 +66,7 @@ class Conv {
   int rows_;      // of each product, for one sample
   int depth_;     // inner extent of each product
   Buffer<T> weight_;  // [products, depth, out]
+  std::vector<Packed<T>> forward_, backward_;  // the same, a matrix each, and transposed
 };
 
 extern template class Conv<float>;

@@ -7,15 +7,26 @@
 
 namespace synpo {
 namespace {
+
 constexpr int kRows = 64;  // of a shard
+
+// Memory to pack a layer's weight into, for all threads; nothing of it outlives the layer's call.
+template <class T>
+const Packed<T>& packed(Op op, int k, int n, const T* w, int ldw) {
+  thread_local Packed<T> weight;
+  weight.pack(op, k, n, w, ldw);
+  return weight;
+}
+
 }
 
 template <class T>
 void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* b, bool relu, T* y) {
+  const Packed<T>& weight = packed(Op::kAsIs, in, out, w, out);
   parallel.run(shard_count(rows, kRows), [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
     T* to = y + size_t(range.begin) * out;
-    gemm(Op::kAsIs, Op::kAsIs, range.size(), out, in, x + size_t(range.begin) * in, in, w, out, to, out);
+    gemm(Op::kAsIs, range.size(), x + size_t(range.begin) * in, in, weight, to, out);
     for (int r = 0; r < range.size(); ++r, to += out)
       for (int c = 0; c < out; ++c) {
         const T value = to[c] + (b ? b[c] : T(0));
@@ -27,13 +38,14 @@ void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, co
 template <class T>
 void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* relu_y, T* dy, T* dx, bool add_dx,
                     T* dw, T* db) {
+  const Packed<T>* weight = dx ? &packed(Op::kTransposed, out, in, w, out) : nullptr;
   parallel.run(shard_count(rows, kRows), [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
     T* d = dy + size_t(range.begin) * out;
     if (relu_y) relu_mask(d, relu_y + size_t(range.begin) * out, size_t(range.size()) * out);
-    if (dx) gemm(Op::kAsIs, Op::kTransposed, range.size(), in, out, d, out, w, out, dx + size_t(range.begin) * in, in, add_dx);
+    if (dx) gemm(Op::kAsIs, range.size(), d, out, *weight, dx + size_t(range.begin) * in, in, add_dx);
   });
-  const int block = std::max(16, shard_count(in, 8));
+  constexpr int block = 48;
   parallel.run(shard_count(in, block) + 1, [&](int shard, int) {
     if (shard == 0) {
       if (db)

@@ -1,13 +1,21 @@
-// Loops over channels in vectors of 64 bytes, in plain C++: the compiler maps them to whatever the machine has.
+// Loops over channels in vectors as wide as the target's registers, in plain C++.
 #pragma once
 #include <cstring>
 
 namespace synpo {
 
+#if defined(__AVX512F__)
+constexpr int kVectorBytes = 64;
+#elif defined(__AVX__)
+constexpr int kVectorBytes = 32;
+#else
+constexpr int kVectorBytes = 16;
+#endif
+
 template <class T>
 struct Lanes {
-  typedef T Vec __attribute__((vector_size(64)));
-  static constexpr int kCount = 64 / sizeof(T);
+  typedef T Vec __attribute__((vector_size(kVectorBytes)));
+  static constexpr int kCount = kVectorBytes / sizeof(T);
 };
 
 // Unaligned load and store of a Vec or a scalar.

@@ -125,9 +125,9 @@ void ResNet<T>::normalise_input(Parallel& parallel, int n, const uint8_t* pictur
 }
 
 template <class T>
-void ResNet<T>::prepare_convs(Parallel& parallel, const T* parameters) {
+void ResNet<T>::prepare_convs(Parallel& parallel, const T* parameters, bool training) {
   for (Block& block : blocks_)
-    for (size_t i = 0; i < block.convs.size(); ++i) block.convs[i].prepare(parallel, parameters + block.weights[i]);
+    for (size_t i = 0; i < block.convs.size(); ++i) block.convs[i].prepare(parallel, parameters + block.weights[i], training);
 }
 
 template <class T>
@@ -145,7 +145,7 @@ void ResNet<T>::finish_block(Block& block, Range samples) {
 template <class T>
 void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi) {
   n_ = n;
-  prepare_convs(parallel, parameters);
+  prepare_convs(parallel, parameters, true);
   if (normalise_input_) normalise_input(parallel, n, pictures, statistics);
   input_.grow(n * kInputSize);
   for (size_t b = 0; b < blocks_.size(); ++b) {
@@ -246,7 +246,7 @@ void ResNet<T>::backward(Parallel& parallel, const T* parameters, T* dpsi, T* gr
 
 template <class T>
 void ResNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics) {
-  prepare_convs(parallel, parameters);
+  prepare_convs(parallel, parameters, false);
   for (Block& block : blocks_)
     for (size_t i = 0; i < block.convs.size(); ++i) {
       const int count = block.convs[i].out();

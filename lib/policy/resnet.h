@@ -50,7 +50,7 @@ class ResNet {
   };
   void expand(int n, const uint8_t* pictures, const T* mean, const T* inverse_sd, T* x) const;
   void normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics);
-  void prepare_convs(Parallel& parallel, const T* parameters);
+  void prepare_convs(Parallel& parallel, const T* parameters, bool training);
   void finish_block(Block& block, Range samples);
   const T* block_input(size_t b) const { return b == 0 ? input_.data() : blocks_[b - 1].y.data(); }
 
