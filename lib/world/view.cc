@@ -18,26 +18,29 @@ const std::array<Rgb, kGridColours> kPalette = {{
     {170, 0, 255},    // P
 }};
 
-void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]) {
-  std::memset(colours, kUnseen, kGridCells);
-  // A blind agent (radius 0) sees nothing but itself in its window of one cell.
+namespace {
+
+// Colours the cells that are not black; those of one picture lie `stride` bytes apart.
+void paint(const Maze& maze, const GridFrame& frame, int radius, uint8_t* colours, int stride) {
   const int row = frame.agent / kGridSide, column = frame.agent % kGridSide;
   for (int r = std::max(0, row - radius); r <= std::min(kGridSide - 1, row + radius); ++r)
     for (int c = std::max(0, column - radius); c <= std::min(kGridSide - 1, column + radius); ++c)
-      colours[r * kGridSide + c] = maze.wall[r * kGridSide + c] ? kWall : kFloor;
+      colours[(r * kGridSide + c) * stride] = maze.wall[r * kGridSide + c] ? kWall : kFloor;
   for (int i = 0; i < kTreasures; ++i)
-    if (frame.treasures[i] != kPicked) colours[frame.treasures[i]] = uint8_t(kFirstTreasure + i);
-  colours[frame.agent] = kAgent;
+    if (frame.treasures[i] != kPicked) colours[frame.treasures[i] * stride] = uint8_t(kFirstTreasure + i);
+  colours[frame.agent * stride] = kAgent;
+}
+
+}  // namespace
+
+void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]) {
+  std::memset(colours, kUnseen, kGridCells);
+  paint(maze, frame, radius, colours, 1);
 }
 
 void draw_history(const Maze& maze, const GridHistory& history, int radius, uint8_t* pictures) {
-  static_assert(kHistory == 4);
-  uint8_t colours[kHistory][kGridCells];
-  const int missing = kHistory - history.count;
-  std::memset(colours, kUnseen, size_t(missing) * kGridCells);
-  for (int f = missing; f < kHistory; ++f) draw_view(maze, history.frames[f], radius, colours[f]);
-  for (int cell = 0; cell < kGridCells; ++cell)
-    for (int f = 0; f < kHistory; ++f) pictures[cell * kHistory + f] = colours[f][cell];
+  std::memset(pictures, kUnseen, kGridCells * kHistory);
+  for (int f = kHistory - history.count; f < kHistory; ++f) paint(maze, history.frames[f], radius, pictures + f, kHistory);
 }
 
 void GridHistory::push(const GridFrame& frame) {

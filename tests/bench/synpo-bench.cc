@@ -1,17 +1,18 @@
 // Rates of the worlds, the formats and the network step, for scripts/bench.
 //   synpo-bench rows                     TSV rows name, value, unit of everything but the step
 //   synpo-bench train|forward B THREADS  states per second of the Table 2 network at batch B
+#include <Eigen/Core>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
 #include <vector>
-#include <algorithm>
 
 #include "base/parallel.h"
 #include "base/random.h"
 #include "nn/adam.h"
-#include "nn/gemm.h"
+#include "learn/episode.h"
 #include "policy/synpo.h"
 #include "world/gridworld.h"
 #include "world/planner.h"
@@ -97,6 +98,74 @@ double network_rate(bool train, int n, int threads) {
   });
 }
 
+void row(const char* name, double value, const char* unit) { std::printf("%s\t%.6g\t%s\n", name, value, unit); }
+
+// Steps of the world with the network's input drawn at every one, on one core.
+double world_rate() {
+  const GridSet world = GridSet::open("gridworld");
+  std::vector<uint8_t> pictures(size_t(kGridCells) * kHistory);
+  uint64_t episode = 0;
+  return rate(100000, 2, [&] {
+    for (int steps = 0; steps < 100000;) {
+      const int env = int(episode % world.envs()), task = int(episode % world.task_count());
+      GridState state = episode_start(world, {env, task}, 1, Purpose::kEpisodeStart, int64_t(episode++));
+      GridHistory history;
+      GridStep step = {};
+      while (!step.ended()) {
+        history.push(state.now);
+        draw_history(world.maze(env), history, 1, pictures.data());
+        step = grid_step(world.maze(env), world.tasks()[task], state, world.planner(env).action(world.tasks()[task], state));
+        ++steps;
+      }
+    }
+  });
+}
+
+double trajectory_rate() {
+  const GridSet world = GridSet::open("gridworld");
+  int64_t episode = 0;
+  size_t bytes = 0;
+  return rate(1000, 2, [&] {
+    for (int i = 0; i < 1000; ++i, ++episode)
+      bytes += format_trajectory(expert_episode(world, {int(episode % 20), int(episode / 20 % 20)}, 1, episode, 0, 1)).size();
+  });
+}
+
+// Multiply-adds a second of Eigen's float product on the largest layer's shape, on all threads at once.
+double eigen_rate(int threads) {
+  constexpr int kRows = 512, kSide = 256;
+  using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Parallel parallel(threads);
+  std::vector<Matrix> a(threads, Matrix::Random(kRows, kSide)), b(threads, Matrix::Random(kSide, kSide)), c(threads, Matrix(kRows, kSide));
+  constexpr int kRepeats = 64;
+  return rate(threads * kRepeats, 3, [&] {
+           parallel.run(threads, [&](int shard, int) {
+             for (int i = 0; i < kRepeats; ++i) c[shard].noalias() = a[shard] * b[shard];
+           });
+         }) * kRows * kSide * kSide;
+}
+
+// Multiply-adds that one state's training step executes in matrix products: forward, and twice that backward but for the input's gradient.
+double step_multiply_adds() {
+  const PolicyShape shape;
+  const SynPo<float> policy(shape);
+  const double recognisers = 2.0 * (shape.basis * shape.hidden + shape.hidden * shape.embedding) + shape.embedding * (shape.envs + shape.tasks);
+  const double first_block = Conv<float>(kGridSide, kViewChannels, shape.channels[0], 3, 2).multiply_adds() +
+                             Conv<float>(kGridSide, kViewChannels, shape.channels[0], 1, 2).multiply_adds();
+  return 3.0 * (policy.encoder().multiply_adds() + recognisers + shape.feature * shape.basis) - first_block;
+}
+
+int rows() {
+  const int threads = Parallel().threads();
+  row("world_steps_per_s", world_rate(), "steps/s");
+  row("trajectories_per_s", trajectory_rate(), "trajectories/s");
+  const double step = network_rate(true, 512, threads) * step_multiply_adds(), eigen = eigen_rate(threads);
+  row("step_gflops", 2e-9 * step, "GFLOP/s");
+  row("eigen_gflops", 2e-9 * eigen, "GFLOP/s");
+  row("gemm_share", step / eigen, "ratio");
+  return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -105,5 +174,7 @@ int main(int argc, char** argv) {
     std::printf("%.0f\n", network_rate(what == "train", std::atoi(argv[2]), std::atoi(argv[3])));
     return 0;
   }
+  if (argc == 2 && what == "rows") return rows();
+  std::fputs("usage: synpo-bench rows | train BATCH THREADS | forward BATCH THREADS\n", stderr);
   return 64;
 }

@@ -1,0 +1,61 @@
+# What every test file loads: the build directory in PATH, a fresh working directory, and ways to say what should happen.
+bats_require_minimum_version 1.5.0
+
+ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
+DATA=$ROOT/tests/data/cli
+PATH="${SYNPO_BUILD:-$ROOT/build}:$PATH"
+export LC_ALL=C
+TOOLS="synpo-gen-expert synpo-train synpo-eval synpo-matrix synpo-render"
+
+# Small enough for a moment, and still the real network.
+TINY=(-q --batch-states 64 --fill 20 --running 64 --memory 30)
+TINY_PAPER=(-q --recipe paper --trajectories 4 --memory 30)
+
+setup() {
+    mkdir "$BATS_TEST_TMPDIR/work"
+    cd "$BATS_TEST_TMPDIR/work" || exit
+}
+
+# What one file's tests share, made once: pairs.tsv, e.jsonl (60 trajectories of them), a.ckpt (stripped), m.tsv.
+make_inputs() {
+    cd "$BATS_FILE_TMPDIR" || exit
+    synpo-matrix split --envs 3 --tasks 3 -n 5 -s 1 >pairs.tsv
+    synpo-gen-expert -p pairs.tsv -n 60 -s 1 >e.jsonl
+    synpo-train "${TINY[@]}" -n 2 -p pairs.tsv --strip <e.jsonl >a.ckpt
+    printf 'env\ttask\nmap1\tR-B\nmap2\tB-G\n' >two.tsv
+    synpo-eval -q -p two.tsv -n 1 <a.ckpt >m.tsv
+}
+
+complain() {
+    printf '%s\n' "$*" >&2
+    return 1
+}
+
+# fails CODE TOOL ARGUMENT...: the exit code is CODE, the last words on stderr are "TOOL: ...", and no new file is left.
+# stdout goes to $OUT, or ../out; stderr to ../err, for `says`.
+fails() {
+    local code=$1 before after status=0
+    shift
+    before=$(find . | sort)
+    "$@" >"${OUT:-$BATS_TEST_TMPDIR/out}" 2>"$BATS_TEST_TMPDIR/err" || status=$?
+    [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat "$BATS_TEST_TMPDIR/err")"
+    tail -n 1 "$BATS_TEST_TMPDIR/err" | grep -q "^$1: ." || complain "$*: found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1: ...'"
+    after=$(find . | sort)
+    [ "$before" = "$after" ] || complain "$*: left files behind: $(diff <(echo "$before") <(echo "$after"))"
+}
+
+# says TEXT: the message of the command that failed last holds TEXT.
+says() {
+    grep -qF -- "$1" "$BATS_TEST_TMPDIR/err" || complain "found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1'"
+}
+
+# described FILE FILTER: what jq finds in a checkpoint's description.
+described() { synpo-eval --describe -c "$1" | jq -r "$2"; }
+
+# A command on a terminal; its output, without the terminal's carriage returns, in ../err. Returns its exit code.
+on_terminal() {
+    local status=0
+    script -qec "$1" /dev/null </dev/null >"$BATS_TEST_TMPDIR/screen" || status=$?
+    tr -d '\r' <"$BATS_TEST_TMPDIR/screen" >"$BATS_TEST_TMPDIR/err"
+    return "$status"
+}
