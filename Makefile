@@ -17,16 +17,18 @@ TEST_SRC := $(wildcard tests/unit/*.cc)
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
 MAPS     := $(wildcard lib/world/maps/map*.txt)
 
-PACKAGES := g++ make pkg-config libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
+PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
             libgtest-dev bats jq man-db
 
-.PHONY: all lib check bench demo deps install clean check-torch
+BENCH_PACKAGES := python3-torch libopenblas0-openmp
+
+.PHONY: all lib check bench demo deps deps-bench install clean check-torch
 all: $(TOOLS:%=$(B)/%)
 lib: $(B)/libsynpo.a
 
 $(B)/libsynpo.a: $(LIB_OBJ)
 	rm -f $@
-	ar rcs $@ $^
+	@ar rcs $@ $^
 
 # Every tool is one file of its name, and whatever stands beside it as NAME-*.cc.
 define TOOL_RULE
@@ -69,6 +71,10 @@ demo: all
 
 deps:
 	scripts/deps $(PACKAGES)
+
+# What bench and check-torch compare with. Debian's PyTorch takes any BLAS; with the reference one it crawls.
+deps-bench:
+	scripts/deps $(BENCH_PACKAGES)
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5 $(DESTDIR)$(PREFIX)/share/man/man7

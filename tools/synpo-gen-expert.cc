@@ -30,7 +30,7 @@ int gen_expert(int argc, char** argv) {
                   "Writes trajectories of the shortest-path expert, a JSON object a line.");
   options.text('p', "pairs", "FILE", "pairs to draw from: TSV env, task, seen; rows with seen = 1 (all pairs)", pairs_path)
       .integer('n', "count", "N", "trajectories, each of a random pair; 0: until the reader goes away", count, 0, INT64_MAX)
-      .integer(0, "per-pair", "N", "instead of -n: N trajectories of every pair, in order", per_pair, 1, INT64_MAX)
+      .integer(0, "per-pair", "N", "instead of -n: N trajectories of every pair, in order; 0: no", per_pair, 0, INT64_MAX / 100000)
       .integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's", noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
@@ -42,7 +42,7 @@ int gen_expert(int argc, char** argv) {
   if (relabel_stream)
     for (const char* other : {"pairs", "count", "per-pair", "noise", "seed", "window"})
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
-  if (options.given("per-pair") && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
+  if (per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
 
   const GridSet world = GridSet::open(world_name);
   Output output(output_path);

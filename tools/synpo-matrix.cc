@@ -24,10 +24,7 @@ constexpr int kMostFiles = 100000;
 
 std::vector<std::string> env_names(const std::string& world) {
   std::vector<std::string> names;
-  const bool folder = world.starts_with("gridworld:");
-  if (!folder && world != "gridworld") fail(Exit::kUsage, "unknown world ", quoted(world), ", expected gridworld or gridworld:DIR");
-  const std::vector<Maze> mazes = folder ? load_mazes(world.substr(10)) : builtin_mazes();
-  for (const Maze& maze : mazes) names.push_back(maze.name);
+  for (const Maze& maze : open_mazes(world)) names.push_back(maze.name);
   return names;
 }
 

@@ -30,12 +30,6 @@ struct PictureOptions {
   }
 };
 
-std::vector<Maze> mazes_of(const std::string& world) {
-  if (world == "gridworld") return builtin_mazes();
-  if (world.starts_with("gridworld:")) return load_mazes(world.substr(10));
-  fail(Exit::kUsage, "unknown world ", quoted(world), ": expected gridworld or gridworld:DIR");
-}
-
 const Maze& find_maze(const std::vector<Maze>& mazes, const std::string& name) {
   const auto found = std::find_if(mazes.begin(), mazes.end(), [&](const Maze& maze) { return maze.name == name; });
   if (found == mazes.end()) fail(Exit::kUsage, "no maze ", quoted(name), " in this world");
@@ -93,7 +87,7 @@ int map(int argc, char** argv) {
   picture.add_to(options);
   const auto names = options.parse(argc, argv, 0, 1000);
   style.scale = picture.scale;
-  std::vector<Maze> mazes = mazes_of(world);
+  std::vector<Maze> mazes = open_mazes(world);
   if (!names.empty()) {
     std::vector<Maze> chosen;
     for (const std::string& name : names) chosen.push_back(find_maze(mazes, name));
@@ -123,7 +117,7 @@ int view(int argc, char** argv) {
   options.parse(argc, argv);
   style.scale = picture.scale;
   style.radius = int(window);
-  const std::vector<Maze> mazes = mazes_of(world);
+  const std::vector<Maze> mazes = open_mazes(world);
   const Maze& maze = env.empty() ? mazes.front() : find_maze(mazes, env);
   const int task_index = find_task(task);
   const uint64_t pair = uint64_t(&maze - mazes.data()) * grid_tasks().size() + uint64_t(task_index);

@@ -16,9 +16,11 @@ using namespace synpo;
 
 namespace {
 
+constexpr int64_t kUnknown = INT64_MAX;  // total of a run whose limit in time has not been told in updates
+
 struct Settings {
   std::string world = "gridworld", pairs, method = "synpo", output = "-", save, resume, init, log, time;
-  int64_t updates = 0, seed = 1, threads = 0, every = 1000, expect = 0, report = 100, evaluate_every = 0, evaluate_episodes = 100;
+  int64_t updates = 20000, seed = 1, threads = 0, every = 1000, expect = 0, report = 100, evaluate_every = 0, evaluate_episodes = 100;
   bool strip = false, force = false, quiet = false;
 };
 
@@ -37,25 +39,31 @@ std::string percent(double part) {
   return std::isnan(part) ? "-" : text;
 }
 
+void check_length(TrajectoryStream& stream, const Settings& settings) {
+  const uint64_t length = stream.length_up_to(uint64_t(settings.expect));
+  if (length < uint64_t(settings.expect)) fail(Exit::kData, "the stream ended after ", length, " trajectories, expected ", settings.expect);
+}
+
 // Updates until the total is reached or a signal comes; returns the signal, or 0.
 int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, double limit_s) {
-  RunLog log(settings.log);
+  RunLog log(settings.log, !settings.resume.empty());
   Progress progress("synpo-train", "updates", uint64_t(run.total_updates()), settings.quiet);
   const auto start = std::chrono::steady_clock::now();
   auto reported = start;
   const int64_t first = run.updates();
   const int64_t measured = std::max<int64_t>(1, std::min<int64_t>(50, run.options().warm_up > 0 ? int64_t(run.options().warm_up) : run.options().cosine ? 1 : 50));
   std::string note;
-  while (run.updates() < run.total_updates() && stop_signal() == 0) {
+  // With a limit in time the total is not known before some updates have been timed.
+  const auto goes_on = [&] { return run.updates() < run.total_updates() || (limit_s > 0 && run.updates() < first + measured); };
+  while (goes_on() && stop_signal() == 0) {
     if (!run.update(stream)) fail(Exit::kData, "standard input has no trajectory");
-    if (stream.ended() && settings.expect > 0 && stream.lines() < uint64_t(settings.expect))
-      fail(Exit::kData, "the stream ended after ", stream.lines(), " trajectories, expected ", settings.expect);
+    if (stream.ended()) check_length(stream, settings);
     const int64_t done = run.updates();
     if (limit_s > 0 && done - first == measured) {
       const double elapsed = seconds_since(start);
       run.set_total_updates(first + std::max(measured, int64_t(limit_s / elapsed * measured)));
       progress.set_total(uint64_t(run.total_updates()));
-      if (!settings.quiet)
+      if (!settings.quiet && first == 0)
         std::fprintf(stderr, "synpo-train: %s make %lld updates; -n %lld repeats this run\n", settings.time.c_str(),
                      (long long)run.total_updates(), (long long)run.total_updates());
     }
@@ -87,7 +95,7 @@ int body(int argc, char** argv) {
   RecipeOptions hyper;
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
-  options.integer('n', "count", "N", "updates in all", s.updates, 0, INT64_MAX)
+  options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
       .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones", s.time)
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)", s.pairs)
       .text('m', "method", "NAME", "method: synpo", s.method)
@@ -100,7 +108,7 @@ int body(int argc, char** argv) {
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
       .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)
       .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX)
-      .text(0, "log", "FILE", "run log, TSV", s.log)
+      .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
       .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
       .integer(0, "evaluate-every", "N", "updates between two evaluations on sampled pairs; 0: none", s.evaluate_every, 0, INT64_MAX)
       .integer(0, "evaluate-episodes", "N", "episodes of such an evaluation, for seen and for unseen pairs", s.evaluate_episodes, 1, 1000000)
@@ -119,7 +127,6 @@ int body(int argc, char** argv) {
   if (resumes && (hyper.given() || !s.init.empty() || options.given("pairs") || options.given("method") || options.given("seed") || options.given("world")))
     fail(Exit::kUsage, "--resume takes everything but the limit from the checkpoint");
   if (limit_s > 0 && options.given("count")) fail(Exit::kUsage, "-n and --time exclude each other");
-  if (!resumes && limit_s == 0 && !options.given("count")) fail(Exit::kUsage, "how long? -n UPDATES or --time LIMIT");
   catch_stop_signals();
 
   Parallel parallel(int(s.threads));
@@ -138,19 +145,26 @@ int body(int argc, char** argv) {
     run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(), seen, uint64_t(s.seed));
     if (!s.init.empty()) run->take_weights(load_model(load(s.init), world));
   }
-  if (options.given("count")) run->set_total_updates(s.updates);
-  if (limit_s > 0) run->set_total_updates(INT64_MAX);
+  if (options.given("count") || (!resumes && limit_s == 0)) run->set_total_updates(s.updates);
+  if (!resumes && limit_s > 0) run->set_total_updates(kUnknown);
+  if (resumes && limit_s == 0 && run->total_updates() == kUnknown)
+    fail(Exit::kUsage, "the run was stopped before its --time was told in updates: give -n or --time");
 
+  // Made before the training, so that hours of it don't end in "cannot create".
+  Output output(s.output, Output::Kind::kBinary, s.force);
+  if (!s.save.empty()) Output probe(s.save);
   int signal = 0;
-  if (run->updates() < run->total_updates()) {
+  if (run->updates() < run->total_updates() || limit_s > 0) {
     Input input("-");
     TrajectoryStream stream(input, world, run->allowed(), run->window());
     stream.skip(run->stream_lines(), run->stream_hash());
     signal = train(*run, stream, s, limit_s);
+    if (!s.save.empty()) write_file(s.save, format_checkpoint(run->checkpoint(true)));
+    if (signal == 0) check_length(stream, s);
   }
   const bool unfinished = run->updates() < run->total_updates();
-  if (!s.save.empty()) write_file(s.save, format_checkpoint(run->checkpoint(true)));
-  write_file(s.output, format_checkpoint(run->checkpoint(!s.strip)), Output::Kind::kBinary, s.force);
+  output.write(format_checkpoint(run->checkpoint(!s.strip)));
+  output.finish();
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   if (!s.quiet)

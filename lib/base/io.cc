@@ -105,8 +105,13 @@ Output::Output(const std::string& path, Kind kind, bool force) : path_(path), fd
     // A device or a pipe takes the bytes as they come; a name beside it would be of no use.
     fd_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   } else {
-    temporary_ = path + ".part" + std::to_string(getpid());
-    fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    // One process may have two outputs of one name.
+    const std::string stem = path + ".part" + std::to_string(getpid());
+    for (int i = 0; i < 100; ++i) {
+      temporary_ = i ? stem + "-" + std::to_string(i) : stem;
+      fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+      if (fd_ >= 0 || errno != EEXIST) break;
+    }
   }
   if (fd_ < 0) {
     temporary_.clear();

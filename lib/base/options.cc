@@ -184,6 +184,8 @@ int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char
     std::fprintf(stderr, "%s: %s\n", tool, message);
     return int(code);
   };
+  // Some launchers have it ignored; a reader that went away shall end the tool without a word.
+  std::signal(SIGPIPE, SIG_DFL);
   try {
     return body(argc, argv);
   } catch (const Error& error) {

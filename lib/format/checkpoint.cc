@@ -17,7 +17,7 @@ constexpr char kTrainPrefix[] = "train/";
 int64_t whole(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
   const Json value = Json::parse(text, nullptr, false);
-  if (!value.is_number_integer() || value.get<double>() < 0 || value.get<double>() > 9e18)
+  if (!value.is_number_unsigned() || value.get<uint64_t>() > uint64_t(INT64_MAX))
     fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number from 0");
   return value.get<int64_t>();
 }
@@ -88,7 +88,7 @@ Checkpoint read_checkpoint(Input& input) {
     c.seed = uint64_t(whole(file, "seed"));
     c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
     c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();
-    c.shape = structure(file, "shape").get<std::map<std::string, double>>();
+    c.shape = structure(file, "shape").get<std::map<std::string, int64_t>>();
     c.options = structure(file, "options").get<std::map<std::string, std::string>>();
     for (const Json& env : structure(file, "envs"))
       c.envs.push_back({env.at("name").get<std::string>(), parse_hex(env.at("hash").get<std::string>()), env.at("content").get<std::string>()});

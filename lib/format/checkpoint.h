@@ -25,7 +25,7 @@ struct Checkpoint {
   std::vector<Env> envs;
   std::vector<std::string> tasks;
   std::vector<std::pair<std::string, std::string>> seen;  // (env, task)
-  std::map<std::string, double> shape;                     // sizes of the network
+  std::map<std::string, int64_t> shape;                    // sizes of the network
   std::map<std::string, std::string> options;              // hyper-parameters of the training, as text
   int64_t updates = 0, states = 0;
   uint64_t seed = 0;

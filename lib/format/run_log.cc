@@ -1,6 +1,7 @@
 #include "format/run_log.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -23,10 +24,12 @@ std::string number(double value) {
 }  // namespace
 
 // The log grows in place, so that it can be followed; whole rows are written at once.
-RunLog::RunLog(const std::string& path) : path_(path) {
+RunLog::RunLog(const std::string& path, bool append) : path_(path) {
   if (path.empty()) return;
-  fd_ = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  fd_ = open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | (append ? O_APPEND : O_TRUNC), 0666);
   if (fd_ < 0) fail(Exit::kCantCreate, "cannot create '", path, "': ", std::strerror(errno));
+  struct stat status;
+  if (append && fstat(fd_, &status) == 0 && status.st_size > 0) return;
   put("update\tstates\ttrajectories\tseconds\tstates_per_s\tlearning_rate\tloss\tpolicy\treward\tenv\ttask\t"
       "right_move\tright_pick\tright_walk_on\tright_start\tseen_success\tseen_reward\tunseen_success\tunseen_reward\n");
 }

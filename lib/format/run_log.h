@@ -22,8 +22,8 @@ struct RunLogRow {
 
 class RunLog {
  public:
-  // Writes the header. An empty path writes nowhere.
-  explicit RunLog(const std::string& path);
+  // Writes the header; a log that is there already is written anew, or continued where `append`. An empty path writes nowhere.
+  RunLog(const std::string& path, bool append);
   ~RunLog();
   RunLog(const RunLog&) = delete;
   RunLog& operator=(const RunLog&) = delete;

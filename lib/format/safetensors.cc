@@ -172,8 +172,13 @@ SafeTensors read_safetensors(Input& input) {
 std::string format_safetensors(const SafeTensors& file) {
   Json header = Json::object();
   if (!file.metadata.empty()) header["__metadata__"] = file.metadata;
+  // The widest types first, so that every tensor is aligned.
+  std::vector<std::pair<std::string, const Tensor*>> order;
+  for (const auto& [name, tensor] : file.tensors) order.emplace_back(name, &tensor);
+  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return type_size(a.second->type) > type_size(b.second->type); });
   uint64_t at = 0;
-  for (const auto& [name, tensor] : file.tensors) {
+  for (const auto& [name, pointer] : order) {
+    const Tensor& tensor = *pointer;
     header[name] = {{"dtype", type_name(tensor.type).name}, {"shape", tensor.shape}, {"data_offsets", {at, at + tensor.bytes.size()}}};
     at += tensor.bytes.size();
   }
@@ -183,7 +188,7 @@ std::string format_safetensors(const SafeTensors& file) {
   std::string out(reinterpret_cast<const char*>(&length), sizeof length);
   out.reserve(out.size() + text.size() + at);
   out += text;
-  for (const auto& [name, tensor] : file.tensors) out += tensor.bytes;
+  for (const auto& [name, tensor] : order) out += tensor->bytes;
   return out;
 }
 

@@ -39,7 +39,7 @@ struct SafeTensors {
 
 // Throws kData for anything that is not a whole, well-formed file; memory is taken only as bytes arrive.
 SafeTensors read_safetensors(Input& input);
-// Tensors in the order of their names, header keys sorted: the same content gives the same bytes.
+// Tensors by the width of their types, then by name, header keys sorted: the same content gives the same bytes.
 std::string format_safetensors(const SafeTensors& file);
 
 }  // namespace synpo

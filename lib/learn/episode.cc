@@ -127,7 +127,7 @@ std::vector<EnvTask> resolve_pairs(const GridSet& world, const std::vector<PairR
   std::vector<EnvTask> pairs;
   for (const PairRow& row : rows) {
     const EnvTask pair = {world.env_index(row.env), world.task_index(row.task)};
-    if (pair.env < 0) fail(Exit::kData, "pairs: unknown env ", quoted(row.env), " (other maps? see -w)");
+    if (pair.env < 0) fail(Exit::kData, "pairs: unknown env ", quoted(row.env), " (other maps?)");
     if (pair.task < 0) fail(Exit::kData, "pairs: unknown task ", quoted(row.task));
     if (row.seen || !seen_only) pairs.push_back(pair);
   }

@@ -62,6 +62,8 @@ void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, cons
     episodes_.push_back(std::move(e));
   }
   if (episodes_.size() > capacity_ || serials_.size() != episodes_.size()) bad();
+  // Until the memory is full, the next episode goes behind the last one.
+  if (added_ < episodes_.size() || (added_ > episodes_.size() && episodes_.size() < capacity_)) bad();
 }
 
 }  // namespace synpo

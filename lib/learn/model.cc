@@ -9,7 +9,7 @@
 namespace synpo {
 namespace {
 
-constexpr double kSizeLimit = 65536;
+constexpr int64_t kSizeLimit = 65536;
 
 struct SizeName {
   const char* name;
@@ -33,19 +33,19 @@ std::unique_ptr<Policy<float>> make_policy(const std::string& method, const Poli
   fail(Exit::kData, "unknown method ", quoted(method), ", this build has synpo");
 }
 
-std::map<std::string, double> describe_shape(const PolicyShape& shape) {
-  std::map<std::string, double> sizes;
+std::map<std::string, int64_t> describe_shape(const PolicyShape& shape) {
+  std::map<std::string, int64_t> sizes;
   for (const SizeName& size : kSizes) sizes[size.name] = shape.*size.member;
   for (const SwitchName& flag : kSwitches) sizes[flag.name] = shape.*flag.member;
   for (size_t i = 0; i < shape.channels.size(); ++i) sizes["channels" + std::to_string(i + 1)] = shape.channels[i];
   return sizes;
 }
 
-PolicyShape parse_shape(const std::map<std::string, double>& sizes) {
-  const auto get = [&](const std::string& name, double low, double high) {
+PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes) {
+  const auto get = [&](const std::string& name, int64_t low, int64_t high) {
     const auto found = sizes.find(name);
     if (found == sizes.end()) fail(Exit::kData, "the shape has no '", name, "'");
-    if (!(found->second >= low && found->second <= high) || found->second != std::floor(found->second))
+    if (found->second < low || found->second > high)
       fail(Exit::kData, "shape '", name, "': found ", found->second, ", expected a whole number from ", low, " to ", high);
     return int(found->second);
   };

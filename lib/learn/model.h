@@ -13,9 +13,9 @@
 namespace synpo {
 
 std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape);
-std::map<std::string, double> describe_shape(const PolicyShape& shape);
+std::map<std::string, int64_t> describe_shape(const PolicyShape& shape);
 // Throws kData for sizes that are missing or out of bounds.
-PolicyShape parse_shape(const std::map<std::string, double>& sizes);
+PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes);
 
 struct Model {
   std::string method;

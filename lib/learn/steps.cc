@@ -70,8 +70,9 @@ void RunningDraw::restart(const ReplayMemory& memory, Running& running, uint32_t
 }
 
 void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const {
-  if (running.following && memory.serial(running.place) == running.serial) {
-    const GridEpisode& episode = memory[running.place];
+  const GridEpisode& episode = memory[running.place];
+  // A recorded trajectory may break off before its episode ends.
+  if (running.following && memory.serial(running.place) == running.serial && running.state.steps < episode.actions.size()) {
     label = episode.labels[running.state.steps];
     move = episode.actions[running.state.steps];
   } else {
@@ -81,8 +82,9 @@ void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& runn
 
 void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
   if (running.following) {
-    const bool there = memory.serial(running.place) == running.serial;
-    running.following = there && memory[running.place].actions[running.state.steps] == action;
+    const GridEpisode& episode = memory[running.place];
+    const bool there = memory.serial(running.place) == running.serial && running.state.steps < episode.actions.size();
+    running.following = there && episode.actions[running.state.steps] == action;
   }
   const GridStep step = grid_step(world_->maze(running.pair.env), world_->tasks()[running.pair.task], running.state, action);
   running.history.push(running.state.now);

@@ -29,6 +29,12 @@ std::optional<GridEpisode> TrajectoryStream::next() {
   }
 }
 
+uint64_t TrajectoryStream::length_up_to(uint64_t lines) {
+  uint64_t read = lines_;
+  while (read < lines && !ended_ && input_.line(line_)) ++read;
+  return read;
+}
+
 void TrajectoryStream::skip(uint64_t lines, uint64_t hash) {
   for (; lines_ < lines; ++lines_) {
     if (!input_.line(line_))

@@ -18,6 +18,8 @@ class TrajectoryStream {
 
   // The next trajectory; nothing at the end. Errors are kData with the line.
   std::optional<GridEpisode> next();
+  // Reads on without parsing until `lines` lines have come in all or the stream ends; how many have come by then.
+  uint64_t length_up_to(uint64_t lines);
   // Passes over `lines` lines without parsing and checks that they are those that `hash` was made of (kData).
   void skip(uint64_t lines, uint64_t hash);
 

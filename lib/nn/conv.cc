@@ -168,35 +168,39 @@ void Conv<T>::scatter_tiles_adjoint(int samples, const T* dy, T* doutputs, size_
   }
 }
 
+// Calls body(at) for every tap of every output pixel of one sample, in the order of the gathered rows; `at` is the place of the tap's
+// pixel in x, or -1 outside the picture.
+template <class T>
+template <class Body>
+void Conv<T>::for_taps(Body&& body) const {
+  const int padding = kernel_ / 2;
+  for (int pixel = 0; pixel < side_out_ * side_out_; ++pixel)
+    for (int tap = 0; tap < kernel_ * kernel_; ++tap) {
+      const int r = pixel / side_out_ * stride_ + tap / kernel_ - padding, q = pixel % side_out_ * stride_ + tap % kernel_ - padding;
+      const bool inside = unsigned(r) < unsigned(side_) && unsigned(q) < unsigned(side_);
+      body(inside ? (r * side_ + q) * in_ : -1);
+    }
+}
+
 template <class T>
 void Conv<T>::gather_pixels(int samples, const T* x, T* inputs) const {
-  const int padding = kernel_ / 2;
   for (int n = 0; n < samples; ++n, x += x_size())
-    for (int i = 0; i < side_out_; ++i)
-      for (int j = 0; j < side_out_; ++j)
-        for (int ki = 0; ki < kernel_; ++ki)
-          for (int kj = 0; kj < kernel_; ++kj, inputs += in_) {
-            const int r = i * stride_ + ki - padding, q = j * stride_ + kj - padding;
-            if (unsigned(r) < unsigned(side_) && unsigned(q) < unsigned(side_))
-              std::memcpy(inputs, x + (size_t(r) * side_ + q) * in_, in_ * sizeof(T));
-            else
-              std::memset(inputs, 0, in_ * sizeof(T));
-          }
+    for_taps([&](int at) {
+      if (at >= 0)
+        std::memcpy(inputs, x + at, in_ * sizeof(T));
+      else
+        std::memset(inputs, 0, in_ * sizeof(T));
+      inputs += in_;
+    });
 }
 
 template <class T>
 void Conv<T>::gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const {
-  const int padding = kernel_ / 2;
   for (int n = 0; n < samples; ++n, dx += x_size())
-    for (int i = 0; i < side_out_; ++i)
-      for (int j = 0; j < side_out_; ++j)
-        for (int ki = 0; ki < kernel_; ++ki)
-          for (int kj = 0; kj < kernel_; ++kj, dinputs += in_) {
-            const int r = i * stride_ + ki - padding, q = j * stride_ + kj - padding;
-            if (unsigned(r) >= unsigned(side_) || unsigned(q) >= unsigned(side_)) continue;
-            T* to = dx + (size_t(r) * side_ + q) * in_;
-            for (int c = 0; c < in_; ++c) to[c] += dinputs[c];
-          }
+    for_taps([&](int at) {
+      for (int c = 0; at >= 0 && c < in_; ++c) dx[at + c] += dinputs[c];
+      dinputs += in_;
+    });
 }
 
 template <class T>

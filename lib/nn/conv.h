@@ -50,6 +50,8 @@ class Conv {
   void gather_tiles_adjoint(int samples, const T* dinputs, size_t product_stride, T* dx) const;
   template <class Algorithm>
   void scatter_tiles_adjoint(int samples, const T* dy, T* doutputs, size_t product_stride) const;
+  template <class Body>
+  void for_taps(Body&& body) const;
   void gather_pixels(int samples, const T* x, T* inputs) const;
   void gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const;
 

@@ -8,7 +8,16 @@
 namespace synpo {
 namespace {
 constexpr size_t kBlock = 64;  // rows summed in T before they are added to the double sums
+
+// sums[i] += lane i of v.
+template <class T, class V>
+void add_lanes(double* sums, const V& v) {
+  T lanes[sizeof(V) / sizeof(T)];
+  store(lanes, v);
+  for (size_t i = 0; i < sizeof(V) / sizeof(T); ++i) sums[i] += lanes[i];
 }
+
+}  // namespace
 
 void ChannelSums::reset(int shards, int channels, int kinds) {
   shards_ = shards;
@@ -39,13 +48,8 @@ void BatchNorm<T>::add_rows(int shard, const T* z, size_t rows, const T* running
         s += value;
         q += value * value;
       }
-      T s_out[sizeof(V) / sizeof(T)], q_out[sizeof(V) / sizeof(T)];
-      store(s_out, s);
-      store(q_out, q);
-      for (size_t i = 0; i < sizeof(V) / sizeof(T); ++i) {
-        sum[c + i] += s_out[i];
-        squares[c + i] += q_out[i];
-      }
+      add_lanes<T>(sum + c, s);
+      add_lanes<T>(squares + c, q);
     });
   }
 }
@@ -83,13 +87,8 @@ void BatchNorm<T>::add_backward_rows(int shard, const T* d, const T* z, size_t r
         s += value;
         p += value * (load<V>(z + row * channels_ + c) - mean);
       }
-      T s_out[sizeof(V) / sizeof(T)], p_out[sizeof(V) / sizeof(T)];
-      store(s_out, s);
-      store(p_out, p);
-      for (size_t i = 0; i < sizeof(V) / sizeof(T); ++i) {
-        sum[c + i] += s_out[i];
-        products[c + i] += p_out[i];
-      }
+      add_lanes<T>(sum + c, s);
+      add_lanes<T>(products + c, p);
     });
   }
 }

@@ -14,13 +14,7 @@ GridSet::GridSet(std::vector<Maze> mazes) : mazes_(std::move(mazes)) {
   }
 }
 
-GridSet GridSet::open(const std::string& world) {
-  constexpr char kWorld[] = "gridworld";
-  if (world == kWorld) return GridSet(builtin_mazes());
-  const std::string prefix = std::string(kWorld) + ":";
-  if (world.starts_with(prefix)) return GridSet(load_mazes(world.substr(prefix.size())));
-  fail(Exit::kUsage, "unknown world ", quoted(world), ", expected 'gridworld' or 'gridworld:DIR'");
-}
+GridSet GridSet::open(const std::string& world) { return GridSet(open_mazes(world)); }
 
 int GridSet::env_index(const std::string& name) const {
   for (int i = 0; i < envs(); ++i)

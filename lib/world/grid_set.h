@@ -14,7 +14,7 @@ class GridSet {
   GridSet(GridSet&&) = default;
   GridSet& operator=(GridSet&&) = default;
 
-  // "gridworld": the built-in mazes; "gridworld:DIR": map*.txt of a folder. Throws kUsage for another world.
+  // By the world's name, as open_mazes() has it.
   static GridSet open(const std::string& world);
 
   const std::vector<Maze>& mazes() const { return mazes_; }

@@ -62,15 +62,17 @@ Maze parse_maze(const std::string& name, const std::string& text, const std::str
   Maze maze;
   maze.name = name;
   for (int row = 0; row < kGridSide; ++row) {
-    const std::string& line = lines[row];
+    std::string line = lines[row];
+    line.erase(std::min(line.size(), std::max<size_t>(kGridSide, line.find_last_not_of(' ') + 1)));
     if (line.size() > kGridSide)
       fail(Exit::kData, where, ": line ", row + 1, ": found ", line.size(), " characters, expected ", kGridSide);
     for (int column = 0; column < kGridSide; ++column) {
-      const char c = column < int(line.size()) ? line[column] : ' ';
+      // Editors drop blanks at the end of a line: what is missing is floor, and the outer wall where it would stand in it.
+      const bool border = row == 0 || row == kGridSide - 1 || column == 0 || column == kGridSide - 1;
+      const char c = column < int(line.size()) ? line[column] : border ? '#' : ' ';
       const auto place = [&] { return concat(where, ": line ", row + 1, ", column ", column + 1, ": "); };
       if (c != '#' && c != ' ' && c != '@')
         fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected '#' (wall), ' ' or '@' (floor)");
-      const bool border = row == 0 || row == kGridSide - 1 || column == 0 || column == kGridSide - 1;
       if (border && c != '#') fail(Exit::kData, place(), "found floor, expected the outer wall");
       maze.wall[row * kGridSide + column] = c == '#';
       if (c != '#') maze.free_cells.push_back(uint8_t(row * kGridSide + column));
@@ -113,6 +115,13 @@ const std::vector<Maze>& builtin_mazes() {
     return all;
   }();
   return mazes;
+}
+
+std::vector<Maze> open_mazes(const std::string& world) {
+  static const std::string name = "gridworld", prefix = name + ":";
+  if (world == name) return builtin_mazes();
+  if (world.starts_with(prefix)) return load_mazes(world.substr(prefix.size()));
+  fail(Exit::kUsage, "unknown world ", quoted(world), ", expected gridworld or gridworld:DIR");
 }
 
 std::vector<Maze> load_mazes(const std::string& folder) {

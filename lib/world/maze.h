@@ -21,7 +21,8 @@ struct Maze {
   std::string canonical_text() const;
 };
 
-// Parses map text (trailing blanks and blank last lines may be missing). `where` names the source in messages. Throws kData
+// Parses map text. Blanks at the end of a line may be missing (floor; wall in the outermost column), and there may be more of them; so may blank
+// last lines. `where` names the source in messages. Throws kData
 // for another size, a foreign character, an outer wall with a hole, fewer than 6 free cells, or floor that is not connected.
 Maze parse_maze(const std::string& name, const std::string& text, const std::string& where);
 
@@ -30,6 +31,9 @@ const std::vector<Maze>& builtin_mazes();
 
 // Every map*.txt of a folder in natural order (map2 before map10). Throws kNoInput when there is none.
 std::vector<Maze> load_mazes(const std::string& folder);
+
+// The mazes of a world by its name on the command line: "gridworld" or "gridworld:DIR". Throws kUsage for another.
+std::vector<Maze> open_mazes(const std::string& world);
 
 // True when `a` comes before `b` with runs of digits compared as numbers.
 bool natural_less(const std::string& a, const std::string& b);

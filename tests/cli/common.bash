@@ -50,7 +50,17 @@ says() {
 }
 
 # described FILE FILTER: what jq finds in a checkpoint's description.
-described() { synpo-eval --describe -c "$1" | jq -r "$2"; }
+described() {
+    synpo-eval --describe -c "$1" -o "$BATS_TEST_TMPDIR/description" && jq -r "$2" "$BATS_TEST_TMPDIR/description"
+}
+
+# tensor FILE NAME: the bytes of a tensor of a safetensors file.
+tensor() {
+    local size begin end
+    size=$(od -An -tu8 -N8 "$1" | tr -d ' ')
+    read -r begin end < <(head -c $((8 + size)) "$1" | tail -c "$size" | jq -r --arg name "$2" '.[$name].data_offsets | @tsv')
+    tail -c +$((9 + size + begin)) "$1" | head -c $((end - begin))
+}
 
 # A command on a terminal; its output, without the terminal's carriage returns, in ../err. Returns its exit code.
 on_terminal() {

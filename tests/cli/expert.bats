@@ -43,7 +43,7 @@ load common
     cmp "$DATA/expert.jsonl" got
     synpo-gen-expert -n 200 -s 2 >e.jsonl
     jq -e -s 'all(.success and .terminated and (.truncated | not) and (has("labels") | not)
-        and (.actions | length) == (.rewards | length) and .rewards[-1] == 1
+        and (.actions | length) == (.rewards | length) and .rewards[-1] == 10.99
         and ((.rewards | add) - .return | fabs) < 1e-9)' e.jsonl
 }
 
@@ -55,6 +55,14 @@ load common
     [ "$status" -eq 141 ]
     [ ! -s err ]
     jq -e .success line
+    # Even under a launcher that ignores the signal.
+    status=$(
+        trap '' PIPE
+        synpo-gen-expert 2>err | head -n 1 >line
+        echo "${PIPESTATUS[0]}"
+    )
+    [ "$status" -eq 141 ]
+    [ ! -s err ]
 }
 
 @test "--noise: random moves are recorded beside the expert's labels; --relabel finds the same labels" {
@@ -65,7 +73,8 @@ load common
     jq -c 'del(.labels)' noisy >bare
     synpo-gen-expert --relabel <bare >restored
     cmp noisy restored
-    synpo-gen-expert --relabel <noisy | cmp noisy -
+    synpo-gen-expert --relabel <noisy >again
+    cmp noisy again
 }
 
 @test "--relabel leaves the expert's own as they are" {

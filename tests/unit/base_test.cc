@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 
@@ -41,7 +42,7 @@ TEST(Random, IsPhilox) {
             (Block{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 
   Random zero(0, Purpose{0});
-  for (const uint32_t word : {0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}) EXPECT_EQ(zero.next(), word);
+  for (const uint32_t word : {0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u}) EXPECT_EQ(zero.next(), word);
   Random random(0x123456789abcdef0, Purpose::kNoise, 17, 4711);
   for (uint32_t block = 0; block < 50; ++block)
     for (const uint32_t word : philox({block, 17, 4711, uint32_t(Purpose::kNoise)}, {0x9abcdef0, 0x12345678 ^ uint32_t(Purpose::kNoise) << 24}))

@@ -1,0 +1,114 @@
+load common
+
+setup_file() { make_inputs; }
+
+setup() {
+    mkdir "$BATS_TEST_TMPDIR/work"
+    cd "$BATS_TEST_TMPDIR/work" || exit
+    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
+}
+
+@test "1 and 2 threads: the same bytes, matrix and records" {
+    synpo-eval -q -p two.tsv -n 9 -j 1 --record one.jsonl <a.ckpt >one
+    synpo-eval -q -p two.tsv -n 9 -j 2 --record two.jsonl <a.ckpt >two
+    cmp one two
+    cmp one.jsonl two.jsonl
+}
+
+@test "-c FILE and stdin, -o FILE and stdout, alike" {
+    synpo-eval -q -p two.tsv -n 1 -c a.ckpt -o got
+    cmp m.tsv got
+}
+
+@test "all rows of -p in their order, whatever their seen; the matrix has the checkpoint's" {
+    printf 'env\ttask\tseen\tpart\nmap9\tO-P\t0\trest\nmap1\tR-B\t0\tP\n' >p.tsv
+    synpo-eval -q -p p.tsv -n 1 <a.ckpt >got
+    synpo-matrix merge got >merged
+    cmp got merged
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["task"], $at["seen"], $at["part"] }' got >rows
+    seen=$(described a.ckpt 'if .seen | index([["map1", "R-B"]]) then 1 else 0 end')
+    printf 'map9 O-P 0 rest\nmap1 R-B %d P\n' "$seen" | cmp - rows
+}
+
+@test "without -p: all pairs of the checkpoint's world" {
+    mkdir maps
+    awk 'BEGIN { for (r = 0; r < 16; ++r) { for (c = 0; c < 16; ++c) printf "%s", r % 15 && c % 15 ? " " : "#"; print "" } }' >maps/map1.txt
+    synpo-gen-expert -w gridworld:maps -n 20 >hall.jsonl
+    synpo-train "${TINY[@]}" -n 1 -w gridworld:maps --strip <hall.jsonl >hall.ckpt
+    synpo-eval -q -n 1 <hall.ckpt >got
+    [ "$(wc -l <got)" -eq 21 ]
+}
+
+@test "shards by --first-episode merge to the whole" {
+    synpo-eval -q -p two.tsv -n 7 <a.ckpt >whole
+    synpo-eval -q -p two.tsv -n 3 <a.ckpt >first
+    synpo-eval -q -p two.tsv -n 4 --first-episode 3 <a.ckpt >rest
+    synpo-matrix merge first rest >merged
+    cmp whole merged
+    synpo-matrix merge rest first >merged
+    cmp whole merged
+    fails 65 synpo-matrix merge first first
+    fails 65 synpo-matrix merge whole rest
+    says "whole"
+}
+
+@test "shards by pairs merge to the whole" {
+    synpo-eval -q -p two.tsv -n 2 <a.ckpt >whole
+    for i in 2 3; do
+        sed -n "1p;${i}p" two.tsv >one.tsv
+        synpo-eval -q -p one.tsv -n 2 <a.ckpt >part$i
+    done
+    synpo-matrix merge part2 part3 >merged
+    cmp whole merged
+}
+
+@test "start states depend on -s and the pair, not on the checkpoint" {
+    synpo-train "${TINY[@]}" -n 2 -s 9 --strip <e.jsonl >b.ckpt
+    for run in a b; do
+        synpo-eval -q -p two.tsv -n 3 --record - <$run.ckpt >$run.jsonl
+        jq -c '[.env, .task, .start]' $run.jsonl >$run.starts
+    done
+    cmp a.starts b.starts
+    run ! cmp -s a.jsonl b.jsonl
+    synpo-eval -q -p two.tsv -n 3 -s 2 --record - <a.ckpt >c.jsonl
+    jq -c '[.env, .task, .start]' c.jsonl >c.starts
+    run ! cmp -s a.starts c.starts
+}
+
+@test "--record - and the matrix tell the same" {
+    synpo-eval -q -p two.tsv -n 4 --record - -o m4.tsv <a.ckpt >r.jsonl
+    jq -r -s 'group_by([.env, .task])[] | [.[0].env, .[0].task, length, (map(select(.success)) | length),
+        (map(select(.truncated)) | length), (map(.actions | length) | add)] | @tsv' r.jsonl | sort >got
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; OFS = FS; next }
+        { print $at["env"], $at["task"], $at["episodes"], $at["successes"], $at["timeouts"], $at["length"] }' m4.tsv | sort | cmp - got
+    fails 64 synpo-eval -q --record - -o - -c a.ckpt
+}
+
+@test "--record - goes into gen-expert --relabel and train --init" {
+    set -o pipefail
+    synpo-eval -q -p two.tsv -n 4 --record - <a.ckpt | synpo-gen-expert --relabel | tee labelled.jsonl |
+        synpo-train "${TINY[@]}" --fill 8 -n 2 --init a.ckpt >b.ckpt
+    [ "$(described b.ckpt .updates)" -eq 2 ]
+    # The labels that eval writes are the expert's already.
+    synpo-eval -q -p two.tsv -n 4 --record direct.jsonl <a.ckpt >m4.tsv
+    cmp labelled.jsonl direct.jsonl
+}
+
+@test "--describe: JSON of what the checkpoint says, without the weights" {
+    synpo-eval --describe <a.ckpt >description
+    jq -e '.format == "synpo-checkpoint" and .version == 1 and .method == "synpo" and .world == "gridworld" and .updates == 2
+        and (.envs | length) == 20 and (.envs[0].content | length) == 272 and (.tasks | length) == 20 and (.seen | length) == 5
+        and .options["batch-states"] == "64" and .shape.feature == 128 and (.weights_hash | test("^[0-9a-f]{16}$"))' description
+    [ "$(jq -r .weights_hash description)" = "$(awk -F '\t' 'NR == 2 { print $1 }' m.tsv)" ]
+}
+
+@test "the blind agent's checkpoint is evaluated blind" {
+    synpo-gen-expert -p two.tsv -n 20 --window 0 >blind.jsonl
+    synpo-train "${TINY[@]}" -n 1 <blind.jsonl >blind.ckpt
+    [ "$(described blind.ckpt .window)" -eq 0 ]
+    synpo-eval -q -p two.tsv -n 1 <blind.ckpt >got
+    [ "$(awk -F '\t' 'NR == 2 { print $3 }' got)" -eq 0 ]
+    cat blind.jsonl e.jsonl >mixed.jsonl
+    fails 65 synpo-train "${TINY[@]}" --fill 21 -n 1 <mixed.jsonl
+    says "line 21: window 1, expected 0"
+}

@@ -1,0 +1,141 @@
+load common
+
+setup_file() { make_inputs; }
+
+setup() {
+    mkdir "$BATS_TEST_TMPDIR/work"
+    cd "$BATS_TEST_TMPDIR/work" || exit
+    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
+}
+
+# Calls `$1 COMMAND...` for every command that writes, with standard input where it needs some; </dev/stdin begins it anew.
+for_writers() {
+    "$1" synpo-gen-expert -n 3
+    "$1" synpo-gen-expert --relabel <e.jsonl
+    "$1" synpo-train "${TINY[@]}" -n 1 <e.jsonl
+    "$1" synpo-eval -q -p two.tsv -n 1 -c a.ckpt
+    "$1" synpo-eval --describe -c a.ckpt
+    "$1" synpo-matrix split
+    "$1" synpo-matrix summary m.tsv
+    "$1" synpo-matrix merge m.tsv
+    "$1" synpo-render heatmap m.tsv
+    "$1" synpo-render map
+    "$1" synpo-render view
+}
+
+@test "a full disk: 74 and a message, from every command" {
+    on_full_disk() {
+        OUT=/dev/full fails 74 "$@" </dev/stdin
+        says "cannot write standard output: No space left on device"
+        fails 74 "$@" -o /dev/full </dev/stdin
+        says "'/dev/full': No space left on device"
+    }
+    for_writers on_full_disk </dev/null
+    for tool in $TOOLS; do
+        OUT=/dev/full fails 74 "$tool" --help
+        OUT=/dev/full fails 74 "$tool" --version
+    done
+}
+
+@test "a full disk under a record, a run log, a --save" {
+    fails 74 synpo-eval -q -p two.tsv -n 1 -c a.ckpt --record /dev/full
+    fails 74 synpo-eval -q -p two.tsv -n 9 -j 2 -c a.ckpt --record /dev/full
+    OUT=/dev/full fails 74 synpo-eval -q -p two.tsv -n 1 -c a.ckpt --record -
+    fails 74 synpo-train "${TINY[@]}" -n 2 --log /dev/full <e.jsonl
+    fails 74 synpo-train "${TINY[@]}" -n 2 --save /dev/full --every 1 <e.jsonl
+}
+
+@test "-o into a missing folder: 73, from every command" {
+    into_nowhere() {
+        fails 73 "$@" -o missing/out
+        says "cannot create 'missing/out': No such file or directory"
+    }
+    for_writers into_nowhere </dev/null
+    fails 73 synpo-eval -q -p two.tsv -n 1 -c a.ckpt --record missing/r.jsonl
+    fails 73 synpo-train "${TINY[@]}" -n 1 --log missing/log.tsv <e.jsonl
+}
+
+@test "what cannot be written is told before the training, not after" {
+    # The stream is broken, too, which would be 65.
+    for place in "-o missing/out" "--save missing/saved" "--log missing/log"; do
+        # shellcheck disable=SC2086
+        fails 73 synpo-train -q -n 3 $place <two.tsv
+        says "cannot create 'missing/"
+    done
+}
+
+@test "-o gives the same bytes as stdout, over an older file, with the usual rights, and nothing beside it" {
+    to_file() {
+        mkdir new
+        echo old >new/out
+        "$@" >stdout </dev/stdin
+        "$@" -o new/out </dev/stdin
+        cmp stdout new/out
+        [ "$(ls -A new)" = out ]
+        [ "$(stat -c %a new/out)" = "$(stat -c %a stdout)" ]
+        rm -r new
+    }
+    for_writers to_file </dev/null
+}
+
+@test "a file that was there survives what fails" {
+    echo precious >kept
+    cp kept out
+    fails 65 synpo-gen-expert --relabel -o out </dev/zero
+    cmp kept out
+    head -n 5 e.jsonl >bad.jsonl
+    echo '{' >>bad.jsonl
+    fails 65 synpo-gen-expert --relabel -o out <bad.jsonl
+    fails 65 synpo-train "${TINY[@]}" -n 1 -o out <bad.jsonl
+    fails 65 synpo-render heatmap -o out bad.jsonl
+    cmp kept out
+}
+
+@test "--save and -o may be one file" {
+    synpo-train "${TINY[@]}" -n 3 --save a --every 1 -o a <e.jsonl
+    synpo-train "${TINY[@]}" -n 3 <e.jsonl >b
+    cmp a b
+}
+
+@test "the reader went away: SIGPIPE and no message, from every command" {
+    to_nobody() {
+        mkfifo pipe
+        : <pipe &
+        # shellcheck disable=SC2094
+        exec 8>pipe
+        wait $!
+        rm pipe
+        status=0
+        "$@" >&8 2>err || status=$?
+        exec 8>&-
+        [ "$status" -eq 141 ] || complain "$*: exit code $status, expected 141"
+        [ ! -s err ]
+    }
+    for_writers to_nobody </dev/null
+}
+
+@test "binary output to a terminal is refused with 64, and before the work; -f forces it" {
+    for command in "synpo-train -q -n 3 <two.tsv" "synpo-render map" "synpo-render heatmap m.tsv" "synpo-render view"; do
+        run -64 on_terminal "$command"
+        says "standard output is a terminal and the output is binary: use -o FILE, or -f to force it"
+    done
+    run -0 on_terminal "synpo-render view -f"
+    grep -q PNG "$BATS_TEST_TMPDIR/screen"
+}
+
+@test "where a stream is expected a terminal is refused with 64" {
+    for command in "synpo-train -n 1 >x" "synpo-eval >x" "synpo-gen-expert --relabel" "synpo-matrix summary" "synpo-matrix merge" \
+        "synpo-render heatmap >x"; do
+        status=0
+        timeout 20 script -qec "$command" /dev/null </dev/null >"$BATS_TEST_TMPDIR/err" || status=$?
+        [ "$status" -eq 64 ] || complain "$command: exit code $status: $(cat "$BATS_TEST_TMPDIR/err")"
+        says "standard input is a terminal: expected a stream or a file"
+    done
+}
+
+@test "text goes to a terminal; progress there is one line that is overwritten, without colours" {
+    run -0 on_terminal "synpo-gen-expert -n 1"
+    jq -e .success "$BATS_TEST_TMPDIR/err"
+    run -0 on_terminal "synpo-matrix summary m.tsv"
+    run ! grep -q "$(printf '\033')" "$BATS_TEST_TMPDIR/err"
+}

@@ -1,0 +1,149 @@
+load common
+
+# A small tree of rooms, cut from the real one.
+tree() {
+    mkdir -p lib tools tests/unit
+    for file in lib/base/error.h lib/base/io.h lib/world/maze.h lib/format/tsv.h lib/nn/dense.h lib/policy/policy.h lib/learn/model.h \
+        lib/stats/interval.h lib/draw/canvas.h tools/synpo-eval.cc; do
+        mkdir -p "$(dirname $file)"
+        cp "$ROOT/$file" $file
+    done
+}
+
+# refused FILE INCLUDE: an include planted at the end of FILE is found, with its line, and nothing else is.
+refused() {
+    echo "#include $2" >>"$1"
+    "$ROOT/scripts/check-order" . >found && complain "$1 may include $2"
+    [ "$(cut -d : -f 1,2 found)" = "$1:$(wc -l <"$1")" ] || complain "found '$(cat found)'"
+    sed -i '$d' "$1"
+}
+
+@test "check-order: the tree is in order, and so is a small one cut from it" {
+    "$ROOT/scripts/check-order"
+    tree
+    "$ROOT/scripts/check-order" .
+}
+
+@test "check-order: every step down is refused where it is planted" {
+    tree
+    while read -r file include; do
+        refused "$file" "$include"
+    done <<'END'
+lib/base/io.h "world/maze.h"
+lib/base/io.h "format/tsv.h"
+lib/world/maze.h "format/tsv.h"
+lib/world/maze.h "nn/dense.h"
+lib/format/tsv.h "world/maze.h"
+lib/format/tsv.h <nn/dense.h>
+lib/nn/dense.h "world/maze.h"
+lib/nn/dense.h   "format/tsv.h"
+lib/nn/dense.h "policy/policy.h"
+lib/policy/policy.h "learn/model.h"
+lib/policy/policy.h "stats/interval.h"
+lib/learn/model.h "draw/canvas.h"
+lib/stats/interval.h "world/maze.h"
+lib/stats/interval.h "draw/canvas.h"
+lib/draw/canvas.h "nn/dense.h"
+lib/draw/canvas.h "policy/policy.h"
+lib/draw/canvas.h "learn/model.h"
+lib/world/maze.h "../format/tsv.h"
+lib/world/maze.h "task.h"
+lib/world/maze.h <opencv2/core.hpp>
+tools/synpo-eval.cc <opencv2/core.hpp>
+END
+}
+
+@test "check-order: several violations, each with its line; OpenCV in lib/draw and its tests alone; a room it does not know" {
+    tree
+    sed -i '3i #include "format/tsv.h"' lib/world/maze.h
+    sed -i '2i # include <opencv2/core.hpp>' lib/nn/dense.h
+    mkdir lib/attic
+    echo '#include <opencv2/core.hpp>' >tests/unit/draw_test.cc
+    cp tests/unit/draw_test.cc lib/draw/font.cc
+    cp tests/unit/draw_test.cc tests/unit/world_test.cc
+    echo '#pragma once' >lib/attic/old.h
+    run -1 "$ROOT/scripts/check-order" .
+    printf '%s\n' "${lines[@]}" | cut -d : -f 1,2 | sort >got
+    printf '%s\n' lib/attic/old.h:1 lib/nn/dense.h:2 lib/world/maze.h:3 tests/unit/world_test.cc:1 | cmp - got
+    mkdir empty
+    run -66 "$ROOT/scripts/check-order" empty
+    mkdir empty/lib
+    run -66 "$ROOT/scripts/check-order" empty
+}
+
+# check UNIT CASES: scripts/check over a unit test program and a test file made of these texts (TEST stands for bats' own
+# word, which this file cannot hold); its last line in $last.
+check() {
+    mkdir -p build cli
+    printf '#!/bin/sh\n%s\n' "$1" >build/unit-tests
+    chmod +x build/unit-tests
+    printf '%s\n' "$2" | sed 's/^TEST/@test/' >cli/x.bats
+    status=0
+    # bats inside bats: what the outer one exports would mislead the inner one.
+    env -i PATH=/usr/local/bin:/usr/bin:/bin TMPDIR="$BATS_TEST_TMPDIR" CHECK_CLI="$PWD/cli" \
+        "$ROOT/scripts/check" "$PWD/build" >out 2>&1 3>&- 4>&- || status=$?
+    last=$(tail -n 1 out)
+}
+
+gtest() { # RESULT...: a program that writes such results as gtest does
+    printf 'for a; do case $a in --gtest_output=json:*) out=${a#*json:};; esac; done\n'
+    printf "cat >\"\$out\" <<'END'\n"
+    local result failures list= bad=0
+    for result; do
+        failures=
+        [ "$result" != FAILED ] || { failures=', "failures": [{"failure": "x"}]' bad=1; }
+        list+=${list:+,}"{\"status\": \"RUN\", \"result\": \"${result/FAILED/COMPLETED}\"$failures}"
+    done
+    printf '{"testsuites": [{"testsuite": [%s]}]}\nEND\nexit %d\n' "$list" "$bad"
+}
+
+@test "check: counts over all runners, in its last line" {
+    check "$(gtest COMPLETED COMPLETED)" 'TEST "a" { true; }'
+    [ "$status $last" = "0 4 passed, 0 failed" ] || complain "$(cat out)"
+    check "$(gtest COMPLETED SKIPPED)" 'TEST "a" { skip; }
+TEST "b" { true; }'
+    [ "$status $last" = "0 3 passed, 0 failed, 2 skipped" ] || complain "$(cat out)"
+}
+
+@test "check: a failure anywhere is counted, printed, and the other runners still run" {
+    check "$(gtest COMPLETED FAILED)" 'TEST "a" { true; }'
+    [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
+    check "$(gtest FAILED)" 'TEST "a" { echo the reason; false; }'
+    [ "$status $last" = "1 1 passed, 2 failed" ] || complain "$(cat out)"
+    grep -q "the reason" out
+}
+
+@test "check: a runner that dies, or runs nothing, is a failure" {
+    check 'kill -SEGV $$' 'TEST "a" { true; }'
+    [ "$status $last" = "1 2 passed, 1 failed" ] || complain "$(cat out)"
+    check "$(gtest)" 'TEST "a" { true; }'
+    [ "$status $last" = "1 2 passed, 1 failed" ] || complain "$(cat out)"
+    check "$(gtest COMPLETED)
+exit 3" '# no test'
+    [ "$status $last" = "1 2 passed, 1 failed" ] || complain "$(cat out)"
+    check "$(gtest COMPLETED | sed 's/exit 0/exit 3/')" 'TEST "a" { true; }'
+    [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
+    check "$(gtest COMPLETED)" 'TEST "a" { true'
+    [ "$status" -eq 1 ] || complain "$(cat out)"
+    run -64 "$ROOT/scripts/check" no-such-build
+}
+
+@test "deps: nothing to do where all is installed; without root or sudo it names what is missing" {
+    "$ROOT/scripts/deps" bash bats >out 2>&1
+    [ ! -s out ]
+    run -64 "$ROOT/scripts/deps"
+    mkdir bin
+    printf '#!/bin/sh\necho 1000\n' >bin/id
+    printf '#!/bin/sh\necho "apt-get $*" >&2\nexit 1\n' >bin/apt-get
+    chmod +x bin/*
+    for tool in dpkg-query env sh dirname; do ln -s "$(command -v $tool)" bin/$tool; done
+    status=0
+    PATH=$PWD/bin "$ROOT/scripts/deps" bash no-such-package >out 2>&1 || status=$?
+    [ "$status" -eq 77 ]
+    grep -q "missing: no-such-package" out
+    printf '#!/bin/sh\necho "sudo $*"\n' >bin/sudo
+    chmod +x bin/sudo
+    PATH=$PWD/bin "$ROOT/scripts/deps" bash no-such-package >out 2>&1
+    grep -qx 'sudo env DEBIAN_FRONTEND=noninteractive apt-get -q update' out
+    grep -qx 'sudo env DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install no-such-package' out
+}

@@ -1,0 +1,549 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "base/hash.h"
+#include "base/random.h"
+#include "format/checkpoint.h"
+#include "format/matrix.h"
+#include "format/pairs.h"
+#include "format/run_log.h"
+#include "format/trajectory.h"
+#include "table_helpers.h"
+#include "temporary.h"
+
+namespace synpo {
+namespace {
+
+constexpr char kGolden[] = "tests/data/v1/";
+
+Trajectory short_trajectory() {
+  Trajectory t;
+  t.env = "map3";
+  t.task = "R-B";
+  t.env_hash = 0xfedcba9876543210;
+  t.window = 2;
+  t.seed = 18446744073709551615u;
+  t.episode = INT64_MAX;
+  t.start = {{"agent", {3, 4}}, {"R", {1, 14}}};
+  t.actions = {0, 4, 3};
+  t.labels = {0, 4, 1};
+  t.reward_cents = {-1, 99, 1099};
+  t.success = t.terminated = true;
+  return t;
+}
+
+Trajectory parsed(const std::string& line) { return parse_trajectory(line, 5, 300); }
+
+void expect_equal(const Trajectory& a, const Trajectory& b) {
+  EXPECT_EQ(a.world, b.world);
+  EXPECT_EQ(a.rules, b.rules);
+  EXPECT_EQ(a.env, b.env);
+  EXPECT_EQ(a.task, b.task);
+  EXPECT_EQ(a.env_hash, b.env_hash);
+  EXPECT_EQ(a.window, b.window);
+  EXPECT_EQ(a.seed, b.seed);
+  EXPECT_EQ(a.episode, b.episode);
+  EXPECT_EQ(a.start, b.start);
+  EXPECT_EQ(a.actions, b.actions);
+  EXPECT_EQ(a.labels, b.labels);
+  EXPECT_EQ(a.reward_cents, b.reward_cents);
+  EXPECT_EQ(a.success, b.success);
+  EXPECT_EQ(a.terminated, b.terminated);
+  EXPECT_EQ(a.truncated, b.truncated);
+}
+
+TEST(Trajectory, IsOneLineOfPlainJson) {
+  EXPECT_EQ(format_trajectory(short_trajectory()),
+            R"({"format":"synpo-trajectory","version":1,"world":"gridworld","rules":1,"env":"map3","task":"R-B","env_hash":"fedcba9876543210",)"
+            R"("window":2,"seed":18446744073709551615,"episode":9223372036854775807,"start":{"R":[1,14],"agent":[3,4]},"actions":[0,4,3],)"
+            R"("labels":[0,4,1],"rewards":[-0.01,0.99,10.99],"return":11.97,"success":true,"terminated":true,"truncated":false})");
+}
+
+TEST(Trajectory, ComesBack) {
+  expect_equal(parsed(format_trajectory(short_trajectory())), short_trajectory());
+  Trajectory cut = short_trajectory();
+  cut.labels.clear();
+  cut.actions.assign(300, 2);
+  cut.reward_cents.assign(300, -2);
+  cut.success = cut.terminated = false;
+  cut.truncated = true;
+  expect_equal(parsed(format_trajectory(cut)), cut);
+}
+
+// The short trajectory with one field replaced (or taken away, where `value` is empty).
+std::string with(const char* field, const std::string& value) {
+  nlohmann::json line = nlohmann::json::parse(format_trajectory(short_trajectory()));
+  if (value.empty())
+    line.erase(field);
+  else
+    line[field] = "HERE";
+  std::string text = line.dump();
+  if (const size_t at = text.find("\"HERE\""); at != std::string::npos) text.replace(at, 6, value);
+  return text;
+}
+
+std::string refused(const std::string& line) {
+  return thrown([&] { parsed(line); });
+}
+
+TEST(Trajectory, UnknownFieldsArePassedOver) {
+  expect_equal(parsed(with("colour", R"({"a":[1,{"b":null}]})")), short_trajectory());
+  expect_equal(parsed(with("return", "")), short_trajectory());
+}
+
+TEST(Trajectory, RefusesWhatIsNoObject) {
+  for (const char* line : {"", "x", "{", "[]", "3", "null", "\"text\"", "{\"format\":}", "{} {}", "{\"a\":\"\xff\"}", "NaN"})
+    EXPECT_EQ(refused(line), "65 found " + quoted(line) + ", expected a JSON object");
+  const std::string good = format_trajectory(short_trajectory());
+  for (size_t size = 0; size < good.size(); ++size)
+    ASSERT_TRUE(refused(good.substr(0, size)).ends_with("expected a JSON object")) << size;
+  EXPECT_EQ(refused("{}"), "65 no field 'format'");
+}
+
+TEST(Trajectory, DeepNestingIsRefusedEarly) {
+  for (const char* open : {"[", "{\"a\":"}) {
+    std::string deep;
+    for (int i = 0; i < 1000000; ++i) deep += open;
+    EXPECT_EQ(refused(deep), "65 nested more than 8 deep: not a trajectory");
+    EXPECT_EQ(refused(with("start", deep)), "65 nested more than 8 deep: not a trajectory");
+  }
+}
+
+TEST(Trajectory, OtherVersionsAndFormatsAreNamed) {
+  EXPECT_EQ(refused(with("version", "2")), "65 version 2, this build reads 1 to 1");
+  EXPECT_EQ(refused(with("version", "0")), "65 version 0, this build reads 1 to 1");
+  EXPECT_EQ(refused(with("version", "\"1\"")), "65 field 'version': found '\"1\"', expected a whole number from 0 to 2147483647");
+  EXPECT_EQ(refused(with("format", "\"minari\"")), "65 field 'format': found '\"minari\"', expected synpo-trajectory");
+}
+
+TEST(Trajectory, MissingFieldsAreNamed) {
+  for (const char* field : {"format", "version", "world", "rules", "env", "task", "env_hash", "window", "seed", "episode", "start", "actions", "rewards",
+                            "success", "terminated", "truncated"})
+    EXPECT_EQ(refused(with(field, "")), concat("65 no field '", field, "'"));
+}
+
+TEST(Trajectory, WrongKindsAreNamed) {
+  const std::string line_start = "65 field '";
+  for (const char* field : {"format", "world", "env", "task", "env_hash"})
+    for (const char* value : {"3", "null", "[]", "true"})
+      EXPECT_EQ(refused(with(field, value)), concat("65 field '", field, "': found '", value, "', expected a string"));
+  for (const char* field : {"success", "terminated", "truncated"})
+    for (const char* value : {"1", "\"true\"", "null"})
+      EXPECT_EQ(refused(with(field, value)), concat("65 field '", field, "': found ", quoted(value), ", expected true or false"));
+  for (const char* field : {"rules", "window", "episode"})
+    for (const char* value : {"-1", "1.5", "1e3", "\"1\"", "null", "[1]", "9223372036854775808", "1e999"}) {
+      const std::string message = refused(with(field, value));
+      EXPECT_TRUE(message.starts_with(concat("65 field '", field, "': found ")) || message.ends_with("expected a JSON object")) << message;
+    }
+  EXPECT_EQ(refused(with("seed", "-1")), "65 field 'seed': found '-1', expected a whole number from 0");
+  EXPECT_EQ(refused(with("seed", "18446744073709551616")), "65 field 'seed': found '1.8446744073709552e+19', expected a whole number from 0");
+  EXPECT_EQ(refused(with("window", "1001")), "65 field 'window': found '1001', expected a whole number from 0 to 1000");
+  EXPECT_EQ(refused(with("env_hash", "\"12\"")), "65 found '12', expected a hash of 16 hexadecimal digits");
+  EXPECT_EQ(refused(with("start", "[1,2]")), "65 field 'start': found '[1,2]', expected an object of places");
+  EXPECT_EQ(refused(with("start", R"({"agent":[1]})")), "65 field 'start': found '[1]', expected [row, column]");
+  EXPECT_EQ(refused(with("start", R"({"agent":[1,-1]})")), "65 field 'start': found '-1', expected a whole number from 0 to 1048576");
+}
+
+std::string array_of(size_t size, const std::string& value) {
+  std::string text = "[";
+  for (size_t i = 0; i < size; ++i) text += (i ? "," : "") + value;
+  return text + "]";
+}
+
+TEST(Trajectory, ActionsAndRewardsAreHeldToTheirBounds) {
+  EXPECT_EQ(refused(with("actions", "[0,5,1]")), "65 field 'actions': found '5', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused(with("actions", "[0,-1,1]")), "65 field 'actions': found '-1', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused(with("actions", "[0,260,1]")), "65 field 'actions': found '260', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused(with("actions", "[]")), "65 field 'actions': found '[]', expected an array of 1 to 300 actions");
+  EXPECT_TRUE(refused(with("actions", array_of(301, "0"))).ends_with("expected an array of 1 to 300 actions"));
+  EXPECT_EQ(refused(with("actions", "{\"0\":1}")), "65 field 'actions': found '{\"0\":1}', expected an array of 1 to 300 actions");
+  EXPECT_EQ(refused(with("labels", "[0,1]")), "65 found 2 labels for 3 actions");
+  EXPECT_EQ(refused(with("labels", "[0,1,9]")), "65 field 'labels': found '9', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused(with("rewards", "[-0.01]")), "65 field 'rewards': found '[-0.01]', expected an array of 3 rewards");
+  EXPECT_EQ(refused(with("rewards", "[0,0,0.005]")), "65 field 'rewards': found '0.005', expected a multiple of 0.01");
+  EXPECT_EQ(refused(with("rewards", "[0,0,1e300]")), "65 field 'rewards': found '1e+300', expected a multiple of 0.01");
+  EXPECT_EQ(refused(with("rewards", "[0,0,null]")), "65 field 'rewards': found 'null', expected a multiple of 0.01");
+  EXPECT_TRUE(refused(with("rewards", "[0,0,NaN]")).ends_with("expected a JSON object"));
+}
+
+TEST(Trajectory, DamagedLinesAreReadOrRefusedAndNothingElse) {
+  const std::string good = format_trajectory(short_trajectory());
+  for (uint64_t i = 0; i < 5000; ++i) {
+    Random random(1, Purpose::kNoise, 0, i);
+    std::string line = good;
+    for (uint32_t changes = 1 + random.below(3); changes > 0; --changes) {
+      const size_t at = random.below(uint32_t(line.size()));
+      if (random.below(3) == 0)
+        line.erase(at, 1 + random.below(8));
+      else
+        line[at] = random.below(2) ? char(random.below(256)) : good[random.below(uint32_t(good.size()))];
+    }
+    try {
+      parsed(line);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Exit::kData);
+    }
+  }
+}
+
+// A safetensors file of this header and this many bytes of data.
+std::string safetensors(const std::string& header, size_t bytes) {
+  const uint64_t length = header.size();
+  return std::string(reinterpret_cast<const char*>(&length), 8) + header + std::string(bytes, '\0');
+}
+
+SafeTensors tensors_of(const std::string& bytes) {
+  return read_text(bytes, [](Input& input) { return read_safetensors(input); });
+}
+
+std::string tensors_refused(const std::string& bytes) {
+  return thrown([&] { tensors_of(bytes); });
+}
+
+SafeTensors small_file() {
+  SafeTensors file;
+  file.metadata = {{"name", "a \"b\" \xc3\xa9"}, {"x", ""}};
+  const float floats[6] = {1, -2.5f, INFINITY, 1e-45f, 0, -0.0f};
+  const double reals[1] = {M_PI};
+  const int64_t wholes[2] = {INT64_MIN, 7};
+  const uint64_t big[1] = {~0ull};
+  const uint8_t bytes[3] = {0, 128, 255};
+  file.add("f", {2, 3}, floats, 6);
+  file.add("d", {}, reals, 1);
+  file.add("i", {2}, wholes, 2);
+  file.add("u", {1, 1}, big, 1);
+  file.add("b", {3}, bytes, 3);
+  file.add("none", {0, 5}, bytes, 0);
+  return file;
+}
+
+TEST(SafeTensors, ComesBack) {
+  const std::string bytes = format_safetensors(small_file());
+  const SafeTensors file = tensors_of(bytes);
+  EXPECT_EQ(file.metadata, small_file().metadata);
+  ASSERT_EQ(file.tensors.size(), 6u);
+  for (const auto& [name, tensor] : small_file().tensors) {
+    EXPECT_EQ(file.tensors.at(name).shape, tensor.shape) << name;
+    EXPECT_EQ(file.tensors.at(name).bytes, tensor.bytes) << name;
+    EXPECT_EQ(file.tensors.at(name).type, tensor.type) << name;
+  }
+  EXPECT_EQ(file.get<int64_t>("i"), (std::vector<int64_t>{INT64_MIN, 7}));
+  EXPECT_EQ(file.get<uint8_t>("b"), (std::vector<uint8_t>{0, 128, 255}));
+  EXPECT_TRUE(file.get<uint8_t>("none").empty());
+  EXPECT_EQ(format_safetensors(file), bytes);
+  uint64_t length;
+  std::memcpy(&length, bytes.data(), 8);
+  EXPECT_EQ(length % 8, 0u);
+}
+
+TEST(SafeTensors, WhatIsAskedForMustBeThere) {
+  const SafeTensors file = small_file();
+  float six[6];
+  file.get("f", six, 6);
+  EXPECT_EQ(six[1], -2.5f);
+  EXPECT_EQ(thrown([&] { file.get("f", six, 5); }), "65 tensor 'f': found 6 values, expected 5");
+  EXPECT_EQ(thrown([&] { file.get("g", six, 6); }), "65 no tensor 'g'");
+  EXPECT_EQ(thrown([&] { file.get("d", six, 1); }), "65 tensor 'd': found type F64, expected F32");
+  EXPECT_EQ(thrown([&] { file.meta("y"); }), "65 no metadata 'y'");
+}
+
+TEST(SafeTensors, EveryTruncationIsRefused) {
+  const std::string bytes = format_safetensors(small_file());
+  EXPECT_EQ(tensors_refused(""), "65 cannot read IN: it is empty");
+  for (size_t size = 1; size < bytes.size(); ++size) {
+    const std::string message = tensors_refused(bytes.substr(0, size));
+    ASSERT_TRUE(message.starts_with(concat("65 cannot read IN: it ends at byte ", size, ", "))) << size << " " << message;
+  }
+  EXPECT_EQ(tensors_refused(bytes + "x"), "65 cannot read IN: bytes follow the last tensor");
+}
+
+TEST(SafeTensors, RefusesBadHeaders) {
+  const auto length_only = [](uint64_t length) { return std::string(reinterpret_cast<const char*>(&length), 8) + "{}"; };
+  for (const uint64_t length : {uint64_t{0}, uint64_t{1}, uint64_t{(100 << 20) + 1}, ~uint64_t{0}})
+    EXPECT_EQ(tensors_refused(length_only(length)), concat("65 cannot read IN: not a safetensors file (header length ", length, ")"));
+  EXPECT_EQ(tensors_refused(length_only(100 << 20)), "65 cannot read IN: it ends at byte 10, in the middle of the header");
+  for (const char* header : {"  ", "[]", "{}}", "{\"a\"", "null"})
+    EXPECT_EQ(tensors_refused(safetensors(header, 0)), "65 cannot read IN: not a safetensors file (the header is no JSON object)");
+  EXPECT_EQ(tensors_refused(safetensors(std::string(1000000, '['), 0)), "65 cannot read IN: not a safetensors file (nested header)");
+  EXPECT_EQ(tensors_refused(safetensors(R"({"__metadata__":{"a":1}})", 0)), "65 cannot read IN: metadata 'a' is no string");
+  EXPECT_EQ(tensors_refused(safetensors(R"({"__metadata__":[]})", 0)), "65 cannot read IN: metadata is no object");
+  EXPECT_EQ(tensors_of(safetensors("{}", 0)).tensors.size(), 0u);
+}
+
+std::string tensor_refused(const std::string& fields, size_t bytes = 8) {
+  return tensors_refused(safetensors("{\"t\":{" + fields + "}}", bytes));
+}
+
+TEST(SafeTensors, RefusesBadTensors) {
+  const std::string start = "65 cannot read IN: tensor 't': ";
+  EXPECT_EQ(tensors_refused(safetensors(R"({"t":3})", 0)), start + "expected dtype, shape and data_offsets");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2])"), start + "expected dtype, shape and data_offsets");
+  EXPECT_EQ(tensor_refused(R"("dtype":"BF16","shape":[4],"data_offsets":[0,8])"), start + "type '\"BF16\"', this build reads F32, F64, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":4,"shape":[4],"data_offsets":[0,8])"), start + "type '4', this build reads F32, F64, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":2,"data_offsets":[0,8])"), start + "shape is no array of at most 8 numbers");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[1,1,1,1,1,1,1,1,2],"data_offsets":[0,8])"), start + "shape is no array of at most 8 numbers");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[0,8,9])"), start + "data_offsets is no pair");
+  for (const char* extent : {"-2", "2.0", "\"2\"", "null", "1e99"})
+    EXPECT_TRUE(tensor_refused(concat(R"("dtype":"F32","shape":[)", extent, R"(],"data_offsets":[0,8])")).find("expected a whole number from 0") !=
+                std::string::npos);
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[0,4])"), start + "data_offsets 0 to 4, expected 8 bytes");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[8,0])"), start + "data_offsets 8 to 0, expected 8 bytes");
+  // Products of extents that are 8 modulo 2^64, and sizes that nothing holds.
+  for (const char* shape : {"[4294967296,4294967296]", "[2305843009213693952,2]", "[18446744073709551615]", "[3,6148914691236517206]", "[17179869184]"})
+    EXPECT_EQ(tensor_refused(concat(R"("dtype":"F32","shape":)", shape, R"(,"data_offsets":[0,8])")), start + "larger than 17179869184 bytes") << shape;
+  EXPECT_EQ(tensor_refused(R"("dtype":"U8","shape":[8000000000],"data_offsets":[0,8000000000])"),
+            "65 cannot read IN: it ends at byte 87, in the middle of tensor 't'");
+}
+
+TEST(SafeTensors, TensorsLieOneBehindTheOther) {
+  const auto two = [](const char* a, const char* b, size_t bytes) {
+    return tensors_refused(safetensors(concat(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":)", a, R"(},"b":{"dtype":"F32","shape":[1],"data_offsets":)", b, "}}"), bytes));
+  };
+  EXPECT_EQ(two("[0,4]", "[0,4]", 8), "65 cannot read IN: tensor 'b' begins at 0, expected 4");
+  EXPECT_EQ(two("[0,4]", "[2,6]", 8), "65 cannot read IN: tensor 'b' begins at 2, expected 4");
+  EXPECT_EQ(two("[0,4]", "[8,12]", 12), "65 cannot read IN: tensor 'b' begins at 8, expected 4");
+  EXPECT_EQ(two("[4,8]", "[8,12]", 12), "65 cannot read IN: tensor 'a' begins at 4, expected 0");
+  EXPECT_EQ(two("[4,8]", "[0,4]", 8), "nothing thrown");
+}
+
+TEST(SafeTensors, DamagedFilesAreReadOrRefusedAndNothingElse) {
+  const std::string good = format_safetensors(small_file());
+  uint64_t length;
+  std::memcpy(&length, good.data(), 8);
+  for (uint64_t i = 0; i < 2000; ++i) {
+    Random random(2, Purpose::kNoise, 0, i);
+    std::string bytes = good;
+    for (uint32_t changes = 1 + random.below(3); changes > 0; --changes)
+      bytes[8 + random.below(uint32_t(length))] = random.below(4) ? good[8 + random.below(uint32_t(length))] : char(random.below(256));
+    try {
+      tensors_of(bytes);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Exit::kData);
+    }
+  }
+}
+
+Checkpoint small_checkpoint() {
+  Checkpoint c;
+  c.window = 2;
+  c.envs = {{"map1", 0xfedcba9876543210, "####\n"}, {"map2", 1, "#@@#\n"}};
+  c.tasks = {"R-B", "B-G"};
+  c.seen = {{"map1", "R-B"}, {"map2", "B-G"}};
+  c.shape = {{"feature", 128}, {"hidden", 512}};
+  c.options = {{"lr", "0.001"}, {"note", "\"quoted\""}};
+  c.updates = 20000;
+  c.states = 10240000;
+  c.seed = 7;
+  const float weights[2] = {1, 2};
+  c.file.add("theta", {2}, weights, 2);
+  c.file.add("train/m/theta", {2}, weights, 2);
+  return c;
+}
+
+Checkpoint checkpoint_of(const std::string& bytes) {
+  return read_text(bytes, [](Input& input) { return read_checkpoint(input); });
+}
+
+TEST(Checkpoint, ComesBack) {
+  const Checkpoint want = small_checkpoint();
+  const std::string bytes = format_checkpoint(want);
+  const Checkpoint got = checkpoint_of(bytes);
+  EXPECT_EQ(got.method, "synpo");
+  EXPECT_EQ(got.world, "gridworld");
+  EXPECT_EQ(got.rules, 1);
+  EXPECT_EQ(got.window, 2);
+  ASSERT_EQ(got.envs.size(), 2u);
+  EXPECT_EQ(got.envs[0].name, "map1");
+  EXPECT_EQ(got.envs[0].hash, 0xfedcba9876543210u);
+  EXPECT_EQ(got.envs[1].content, "#@@#\n");
+  EXPECT_EQ(got.tasks, want.tasks);
+  EXPECT_EQ(got.seen, want.seen);
+  EXPECT_EQ(got.shape, want.shape);
+  EXPECT_EQ(got.options, want.options);
+  EXPECT_EQ(got.updates, 20000);
+  EXPECT_EQ(got.states, 10240000);
+  EXPECT_EQ(got.seed, 7u);
+  EXPECT_EQ(got.file.get<float>("theta"), (std::vector<float>{1, 2}));
+  EXPECT_EQ(format_checkpoint(got), bytes);
+  for (const uint64_t seed : {uint64_t{0}, uint64_t(INT64_MAX)}) {
+    Checkpoint other = want;
+    other.seed = seed;
+    EXPECT_EQ(checkpoint_of(format_checkpoint(other)).seed, seed);
+  }
+}
+
+TEST(Checkpoint, DescribesItself) {
+  const nlohmann::json description = nlohmann::json::parse(small_checkpoint().describe());
+  EXPECT_EQ(description["updates"], 20000);
+  EXPECT_EQ(description["envs"][1]["name"], "map2");
+  EXPECT_EQ(description["weights_hash"], hex(small_checkpoint().weights_hash()));
+  EXPECT_EQ(description["tensors"]["theta"], nlohmann::json::array({2}));
+}
+
+TEST(Checkpoint, TheHashIsOfWhatEvaluationNeeds) {
+  Checkpoint c = small_checkpoint();
+  const uint64_t hash = c.weights_hash();
+  const float other[2] = {1, 3};
+  c.file.add("train/m/theta", {2}, other, 2);
+  c.updates = 3;
+  EXPECT_EQ(c.weights_hash(), hash);
+  c.strip();
+  EXPECT_FALSE(c.file.has("train/m/theta"));
+  EXPECT_TRUE(c.file.has("theta"));
+  EXPECT_EQ(c.weights_hash(), hash);
+  EXPECT_EQ(checkpoint_of(format_checkpoint(c)).weights_hash(), hash);
+  c.file.add("theta", {2}, other, 2);
+  EXPECT_NE(c.weights_hash(), hash);
+}
+
+// The small checkpoint with one entry of its metadata replaced, or taken away.
+std::string checkpoint_refused(const char* key, const std::string& value, bool erase = false) {
+  SafeTensors file = tensors_of(format_checkpoint(small_checkpoint()));
+  if (erase)
+    file.metadata.erase(key);
+  else
+    file.metadata[key] = value;
+  return thrown([&] { checkpoint_of(format_safetensors(file)); });
+}
+
+TEST(Checkpoint, RefusesOtherMetadata) {
+  EXPECT_EQ(checkpoint_refused("version", "2"), "65 cannot read IN: version 2, this build reads 1 to 1");
+  EXPECT_EQ(checkpoint_refused("version", "one"), "65 cannot read IN: metadata 'version': found 'one', expected a whole number from 0");
+  EXPECT_EQ(checkpoint_refused("format", "other"), "65 cannot read IN: not a synpo checkpoint");
+  EXPECT_EQ(checkpoint_refused("format", "", true), "65 cannot read IN: not a synpo checkpoint");
+  for (const char* key : {"method", "world", "rules", "window", "updates", "states", "seed", "tasks", "seen", "shape", "options", "envs"})
+    EXPECT_EQ(checkpoint_refused(key, "", true), concat("65 cannot read IN: no metadata '", key, "'"));
+  for (const char* key : {"rules", "window", "updates", "states", "seed"})
+    for (const char* value : {"-1", "1.5", "\"1\"", "", "[]", "1e30", "18446744073709551616"})
+      EXPECT_EQ(checkpoint_refused(key, value), concat("65 cannot read IN: metadata '", key, "': found '", value, "', expected a whole number from 0"));
+  for (const char* key : {"tasks", "seen", "shape", "options", "envs"}) {
+    EXPECT_EQ(checkpoint_refused(key, "{"), concat("65 cannot read IN: metadata '", key, "': no JSON"));
+    for (const char* value : {"3", "[3]", "{\"a\":[]}"})
+      EXPECT_TRUE(checkpoint_refused(key, value).starts_with("65 cannot read IN: malformed metadata (")) << key << " " << value;
+    EXPECT_TRUE(checkpoint_refused(key, std::string(100000, '[') + std::string(100000, ']')).starts_with("65 cannot read IN: malformed metadata (")) << key;
+  }
+}
+
+TEST(RunLog, WritesARowAReport) {
+  const TemporaryFolder folder;
+  {
+    RunLog log(folder.file("log"), false);
+    RunLogRow row;
+    row.update = 100;
+    row.states = 51200;
+    row.trajectories = 2100;
+    row.seconds = 1.5;
+    row.loss = 2.25;
+    row.right[0] = 0.5;
+    row.right[1] = std::nan("");
+    log.write(row);
+    EXPECT_EQ(contents(folder.file("log")).find("100\t51200\t2100\t1.5\t0\t0\t2.25\t0\t0\t0\t0\t0.5\tNA\t0\t0\tNA\tNA\tNA\tNA\n"),
+              contents(folder.file("log")).find('\n') + 1);
+    row.evaluation = {0.25, -1, 0.125, -2};
+    log.write(row);
+  }
+  const std::string text = contents(folder.file("log"));
+  EXPECT_TRUE(text.starts_with("update\tstates\ttrajectories\tseconds\t"));
+  EXPECT_TRUE(text.ends_with("\t0.25\t-1\t0.125\t-2\n"));
+  // As many fields in every row.
+  int tabs[3] = {}, line = 0;
+  for (const char c : text) {
+    tabs[line] += c == '\t';
+    line += c == '\n' && line < 2;
+  }
+  EXPECT_EQ(tabs[0], 18);
+  EXPECT_EQ(tabs[1], 18);
+  EXPECT_EQ(tabs[2], 18);
+}
+
+TEST(RunLog, IsContinuedOrWrittenAnew) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("log");
+  RunLog(path, true).write({});
+  const std::string once = contents(path), header = once.substr(0, once.find('\n') + 1);
+  EXPECT_TRUE(header.starts_with("update\t"));
+  RunLog(path, true).write({});
+  EXPECT_EQ(contents(path), once + once.substr(header.size()));
+  RunLog(path, false).write({});
+  EXPECT_EQ(contents(path), once);
+}
+
+TEST(RunLog, NamesWhatFails) {
+  const TemporaryFolder folder;
+  RunLog("", false).write({});
+  EXPECT_EQ(thrown([] { RunLog full("/dev/full", false); }), "74 cannot write '/dev/full': No space left on device");
+  EXPECT_EQ(thrown([&] { RunLog none(folder.file("a/b"), false); }), "73 cannot create '" + folder.file("a/b") + "': No such file or directory");
+}
+
+// Files of version 1 keep loading: these were written by the first release.
+TEST(GoldenV1, Trajectories) {
+  const std::string text = contents(std::string(kGolden) + "trajectories.jsonl");
+  const size_t middle = text.find('\n');
+  ASSERT_NE(middle, std::string::npos);
+  const Trajectory first = parsed(text.substr(0, middle)), second = parsed(text.substr(middle + 1, text.size() - middle - 2));
+  EXPECT_EQ(first.env + " " + first.task, "map2 P-O");
+  EXPECT_EQ(first.env_hash, 0x65e773aea34ee04fu);
+  EXPECT_EQ(first.start.at("agent"), (std::pair{3, 1}));
+  EXPECT_EQ(first.start.at("G"), (std::pair{14, 8}));
+  EXPECT_EQ(first.seed, 1u);
+  EXPECT_EQ(first.labels.size(), first.actions.size());
+  EXPECT_NE(first.labels, first.actions);
+  EXPECT_EQ(second.env + " " + second.task, "map20 G-O");
+  EXPECT_EQ(second.episode, 1);
+  EXPECT_EQ(second.reward_cents.back(), 1099);
+  EXPECT_TRUE(second.success && second.terminated);
+  EXPECT_FALSE(second.truncated);
+  EXPECT_EQ(format_trajectory(first) + "\n" + format_trajectory(second) + "\n", text);
+}
+
+TEST(GoldenV1, Checkpoint) {
+  Input input(std::string(kGolden) + "checkpoint.safetensors");
+  const Checkpoint c = read_checkpoint(input);
+  EXPECT_EQ(c.method, "synpo");
+  EXPECT_EQ(c.window, 2);
+  ASSERT_EQ(c.envs.size(), 3u);
+  EXPECT_EQ(c.envs[2].name, "map15");
+  EXPECT_EQ(c.envs[2].hash, Hash().add(c.envs[2].content).value());
+  EXPECT_EQ(c.tasks.size(), 20u);
+  EXPECT_EQ(c.seen.size(), 4u);
+  EXPECT_EQ(c.seen[3], (std::pair<std::string, std::string>{"map15", "P-O"}));
+  EXPECT_EQ(c.shape.at("channels2"), 5);
+  EXPECT_EQ(c.shape.at("normalise_input"), 1);
+  EXPECT_EQ(c.options.at("roll-in"), "0.5");
+  EXPECT_EQ(c.updates, 1234);
+  EXPECT_EQ(c.states, 631808);
+  EXPECT_EQ(c.seed, 42u);
+  EXPECT_EQ(hex(c.weights_hash()), "e0507b4a3a05fe54");
+}
+
+TEST(GoldenV1, Matrix) {
+  Input input(std::string(kGolden) + "matrix.tsv");
+  const Matrix matrix = read_matrix(input);
+  ASSERT_EQ(matrix.rows.size(), 4u);
+  EXPECT_TRUE(matrix.has_part);
+  const MatrixRow& row = matrix.rows[1];
+  EXPECT_EQ(row.run, "e0507b4a3a05fe54");
+  EXPECT_EQ(row.env + " " + row.task, "map1 B-G");
+  EXPECT_EQ(row.window, 2);
+  EXPECT_EQ(row.successes + 10 * row.wrong + 100 * row.timeouts + 1000 * row.episodes, 3111);
+  EXPECT_EQ(row.reward, -1.55);
+  EXPECT_EQ(row.length, 355);
+  EXPECT_TRUE(matrix.rows[0].seen);
+  EXPECT_EQ(matrix.rows[3].part, "rest");
+}
+
+TEST(GoldenV1, Pairs) {
+  Input input(std::string(kGolden) + "pairs.tsv");
+  const std::vector<PairRow> rows = read_pairs(input);
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0].env + " " + rows[0].task, "map1 R-B");
+  EXPECT_TRUE(rows[0].seen && rows[2].seen);
+  EXPECT_FALSE(rows[1].seen || rows[3].seen);
+  EXPECT_EQ(rows[2].part, "Q");
+}
+
+}  // namespace
+}  // namespace synpo

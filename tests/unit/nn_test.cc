@@ -1,0 +1,507 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <tuple>
+
+#include "nn/adam.h"
+#include "nn/conv.h"
+#include "nn/dense.h"
+#include "nn/gemm.h"
+#include "nn/lanes.h"
+#include "nn/layout.h"
+#include "nn/loss.h"
+#include "nn/norm.h"
+#include "numbers.h"
+
+namespace synpo {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// A matrix [rows, columns] with `gap` unused values behind each row, which are NaN.
+template <class T>
+struct Strided {
+  Strided(int row_count, int column_count, int gap, uint64_t seed)
+      : rows(row_count), columns(column_count), stride(column_count + gap), values(size_t(rows) * stride, T(kNan)) {
+    const std::vector<T> random = random_values<T>(size_t(rows) * columns, seed);
+    for (int r = 0; r < rows; ++r) std::copy_n(random.data() + size_t(r) * columns, columns, values.data() + size_t(r) * stride);
+  }
+  T at(Op op, int r, int c) const { return op == Op::kAsIs ? values[size_t(r) * stride + c] : values[size_t(c) * stride + r]; }
+  int rows, columns, stride;
+  std::vector<T> values;
+};
+
+template <class T>
+void check_gemm(Op op_a, Op op_b, int m, int n, int k, bool accumulate, int gap, uint64_t seed) {
+  SCOPED_TRACE(testing::Message() << m << " x " << n << " x " << k << " ops " << int(op_a) << int(op_b) << " gap " << gap << " accumulate " << accumulate);
+  const bool as_is_a = op_a == Op::kAsIs, as_is_b = op_b == Op::kAsIs;
+  const Strided<T> a(as_is_a ? m : k, as_is_a ? k : m, gap, seed), b(as_is_b ? k : n, as_is_b ? n : k, 2 * gap, seed + 1);
+  Strided<T> c(m, n, gap, seed + 2);
+  const Strided<T> before = c;
+  if (!accumulate)
+    for (int i = 0; i < m; ++i) std::fill_n(c.values.data() + size_t(i) * c.stride, n, T(kNan));
+  gemm(op_a, op_b, m, n, k, a.values.data(), a.stride, b.values.data(), b.stride, c.values.data(), c.stride, accumulate);
+  for (int i = 0; i < m; ++i) {
+    for (int j = 0; j < n; ++j) {
+      double sum = accumulate ? double(before.at(Op::kAsIs, i, j)) : 0, size = std::abs(sum);
+      for (int l = 0; l < k; ++l) {
+        const double product = double(a.at(op_a, i, l)) * double(b.at(op_b, l, j));
+        sum += product;
+        size += std::abs(product);
+      }
+      ASSERT_NEAR(double(c.at(Op::kAsIs, i, j)), sum, size * std::numeric_limits<T>::epsilon() * (4 + std::sqrt(k))) << i << ", " << j;
+    }
+    for (int j = n; j < c.stride; ++j) ASSERT_TRUE(std::isnan(double(c.values[size_t(i) * c.stride + j]))) << "written behind row " << i;
+  }
+}
+
+template <class T>
+void check_gemms(int m, int n, int k, int gap, uint64_t seed) {
+  for (const Op op_a : {Op::kAsIs, Op::kTransposed})
+    for (const Op op_b : {Op::kAsIs, Op::kTransposed})
+      for (const bool accumulate : {false, true}) check_gemm<T>(op_a, op_b, m, n, k, accumulate, gap, seed);
+}
+
+TEST(Gemm, SmallAndOddSizes) {
+  for (uint64_t i = 0; i < 80; ++i) {
+    Random random(1, Purpose::kInit, 5, i);
+    const auto size = [&] { return 1 + int(random.below(70)); };
+    const int m = size(), n = size(), k = size(), gap = int(random.below(3)) * 5;
+    check_gemms<float>(m, n, k, gap, i);
+    if (i % 4 == 0) check_gemms<double>(m, n, k, gap, i);
+  }
+}
+
+TEST(Gemm, SizesAroundMultiplesOfVectors) {
+  for (const int near : {16, 32, 48, 64})
+    for (const int off : {-1, 0, 1}) {
+      check_gemms<float>(near + off, 33, 17, 0, 1);
+      check_gemms<float>(12, near + off, 31, 0, 2);
+      check_gemms<float>(25, 32, near + off, 3, 3);
+    }
+  for (const auto& [m, n, k] : {std::tuple(1, 1, 1), std::tuple(1, 70, 70), std::tuple(70, 1, 70), std::tuple(70, 70, 1), std::tuple(1, 1, 300)})
+    check_gemms<float>(m, n, k, 1, 4);
+}
+
+TEST(Gemm, LargerThanAnyBlock) {
+  check_gemms<float>(150, 37, 1100, 0, 1);
+  check_gemms<float>(37, 600, 130, 0, 2);
+  check_gemms<float>(1030, 35, 40, 7, 3);
+  check_gemms<float>(65, 290, 515, 0, 4);
+}
+
+TEST(Gemm, TheSameCallGivesTheSameBits) {
+  const Strided<float> a(77, 130, 0, 1), b(130, 61, 0, 2);
+  std::vector<float> first(77 * 61), second(77 * 61);
+  gemm(Op::kAsIs, Op::kAsIs, 77, 61, 130, a.values.data(), 130, b.values.data(), 61, first.data(), 61);
+  gemm(Op::kAsIs, Op::kAsIs, 77, 61, 130, a.values.data(), 130, b.values.data(), 61, second.data(), 61);
+  EXPECT_EQ(first, second);
+}
+
+TEST(Dot, IsTheSumOfProducts) {
+  for (int n = 0; n < 70; ++n) {
+    const std::vector<float> a = random_values<float>(n, 1), b = random_values<float>(n, 2);
+    const std::vector<double> c = random_values<double>(n, 3), d = random_values<double>(n, 4);
+    EXPECT_NEAR(dot(n, a.data(), b.data()), inner_product(a, b), 1e-6 * (n + 1));
+    EXPECT_NEAR(dot(n, c.data(), d.data()), inner_product(c, d), 1e-14 * (n + 1));
+  }
+}
+
+struct ConvShape {
+  const char* form;
+  int side, in, out, kernel, stride, samples;
+};
+
+constexpr ConvShape kConvShapes[] = {
+    {"Winograd, four tiles", 8, 5, 7, 3, 1, 3},
+    {"Winograd, whole vectors", 8, 16, 32, 3, 1, 2},
+    {"Winograd, one tile", 4, 17, 19, 3, 1, 3},
+    {"Toeplitz", 2, 9, 5, 3, 1, 4},
+    {"Toeplitz, whole vectors and a rest", 2, 35, 33, 3, 1, 3},
+    {"strided 3x3 at 16", 16, 3, 5, 3, 2, 2},
+    {"strided 3x3 at 8", 8, 7, 18, 3, 2, 3},
+    {"strided 3x3 at 4", 4, 5, 3, 3, 2, 3},
+    {"1x1", 2, 11, 6, 1, 1, 3},
+    {"strided 1x1 at 16", 16, 3, 5, 1, 2, 2},
+    {"strided 1x1 at 4", 4, 6, 17, 1, 2, 3},
+};
+
+// From the definition.
+std::vector<double> convolved(const ConvShape& s, const std::vector<double>& x, const std::vector<double>& w) {
+  const int side_out = (s.side + s.stride - 1) / s.stride, padding = s.kernel / 2;
+  std::vector<double> y(size_t(s.samples) * side_out * side_out * s.out, 0);
+  for (int n = 0; n < s.samples; ++n)
+    for (int i = 0; i < side_out; ++i)
+      for (int j = 0; j < side_out; ++j)
+        for (int ki = 0; ki < s.kernel; ++ki)
+          for (int kj = 0; kj < s.kernel; ++kj) {
+            const int r = i * s.stride + ki - padding, q = j * s.stride + kj - padding;
+            if (r < 0 || q < 0 || r >= s.side || q >= s.side) continue;
+            for (int a = 0; a < s.in; ++a)
+              for (int b = 0; b < s.out; ++b)
+                y[((size_t(n) * side_out + i) * side_out + j) * s.out + b] +=
+                    x[((size_t(n) * s.side + r) * s.side + q) * s.in + a] * w[((size_t(ki) * s.kernel + kj) * s.in + a) * s.out + b];
+          }
+  return y;
+}
+
+template <class T>
+struct ConvResult {
+  std::vector<T> y, dx, dw;
+};
+
+// Forward in two calls, backward with dx and dw added to what is there.
+template <class T>
+ConvResult<T> run_conv(const ConvShape& s, typename Conv<T>::Method method, const std::vector<T>& x, const std::vector<T>& w, const std::vector<T>& dy,
+                       int threads, bool add_dx, T there) {
+  Parallel parallel(threads);
+  Conv<T> conv(s.side, s.in, s.out, s.kernel, s.stride, method);
+  EXPECT_EQ(conv.weight_size(), w.size());
+  EXPECT_EQ(conv.x_size() * s.samples, x.size());
+  EXPECT_EQ(conv.y_size() * s.samples, dy.size());
+  conv.prepare(parallel, w.data());
+  ConvResult<T> result = {std::vector<T>(dy.size(), T(kNan)), std::vector<T>(x.size(), add_dx ? there : T(kNan)), std::vector<T>(w.size(), there)};
+  Buffer<T> scratch;
+  const int first = s.samples / 2;
+  conv.forward(first, x.data(), result.y.data(), scratch);
+  conv.forward(s.samples - first, x.data() + first * conv.x_size(), result.y.data() + first * conv.y_size(), scratch);
+  typename Conv<T>::Workspace work;
+  conv.backward(parallel, s.samples, x.data(), dy.data(), result.dx.data(), add_dx, result.dw.data(), work);
+  return result;
+}
+
+class ConvForms : public testing::TestWithParam<ConvShape> {
+ protected:
+  ConvForms() : s(GetParam()) {
+    const int side_out = (s.side + s.stride - 1) / s.stride;
+    x = random_values<double>(size_t(s.samples) * s.side * s.side * s.in, 1);
+    w = random_values<double>(size_t(s.kernel) * s.kernel * s.in * s.out, 2);
+    dy = random_values<double>(size_t(s.samples) * side_out * side_out * s.out, 3);
+  }
+  ConvShape s;
+  std::vector<double> x, w, dy;
+};
+
+TEST_P(ConvForms, ForwardIsTheDefinition) {
+  for (const auto method : {Conv<double>::Method::kFastest, Conv<double>::Method::kDirect})
+    EXPECT_LT(relative_error(run_conv<double>(s, method, x, w, dy, 1, false, 0).y, convolved(s, x, w)), 1e-13);
+}
+
+TEST_P(ConvForms, BackwardIsFiniteDifferences) {
+  // The convolution is linear in x and in w, so that a step of 1 has no error but rounding.
+  const auto loss = [&] { return inner_product(convolved(s, x, w), dy); };
+  const std::vector<double> fixed_x = x, fixed_w = w;
+  for (const bool add_dx : {false, true}) {
+    const ConvResult<double> got = run_conv<double>(s, Conv<double>::Method::kFastest, fixed_x, fixed_w, dy, 2, add_dx, 0.5);
+    Random random(1, Purpose::kInit, 6);
+    for (int i = 0; i < 60; ++i) {
+      const size_t at_x = random.below(uint32_t(x.size())), at_w = random.below(uint32_t(w.size()));
+      ASSERT_NEAR(got.dx[at_x], central_difference(x[at_x], 1, loss) + (add_dx ? 0.5 : 0), 1e-10);
+      ASSERT_NEAR(got.dw[at_w], central_difference(w[at_w], 1, loss) + 0.5, 1e-10);
+    }
+  }
+}
+
+TEST_P(ConvForms, FastestIsDirectInFloat) {
+  const std::vector<float> xf(x.begin(), x.end()), wf(w.begin(), w.end()), dyf(dy.begin(), dy.end());
+  const ConvResult<float> fast = run_conv<float>(s, Conv<float>::Method::kFastest, xf, wf, dyf, 1, false, 0);
+  const ConvResult<float> direct = run_conv<float>(s, Conv<float>::Method::kDirect, xf, wf, dyf, 1, false, 0);
+  EXPECT_LT(relative_error(fast.y, direct.y), 2e-6);
+  EXPECT_LT(relative_error(fast.dx, direct.dx), 2e-6);
+  EXPECT_LT(relative_error(fast.dw, direct.dw), 2e-6);
+}
+
+TEST_P(ConvForms, DxMayBeLeftOut) {
+  Parallel parallel(1);
+  Conv<double> conv(s.side, s.in, s.out, s.kernel, s.stride);
+  conv.prepare(parallel, w.data());
+  Conv<double>::Workspace work;
+  std::vector<double> dw(w.size(), 0);
+  conv.backward(parallel, s.samples, x.data(), dy.data(), nullptr, false, dw.data(), work);
+  EXPECT_LT(relative_error(dw, run_conv<double>(s, Conv<double>::Method::kFastest, x, w, dy, 1, false, 0).dw), 1e-14);
+}
+
+std::string form_name(const testing::TestParamInfo<ConvShape>& info) {
+  std::string name;
+  for (const char c : std::string(info.param.form))
+    if (std::isalnum(static_cast<unsigned char>(c))) name += c;
+  return name;
+}
+INSTANTIATE_TEST_SUITE_P(Conv, ConvForms, testing::ValuesIn(kConvShapes), form_name);
+
+TEST(Conv, LargeBatchesOnOneAndTwoThreads) {
+  // More samples than are transformed at once, and no multiple of any unit.
+  for (const ConvShape& s : {ConvShape{"", 2, 5, 6, 3, 1, 1043}, ConvShape{"", 4, 3, 4, 3, 1, 1043}, ConvShape{"", 4, 5, 3, 3, 2, 1043}}) {
+    const int side_out = (s.side + s.stride - 1) / s.stride;
+    const std::vector<float> x = random_values<float>(size_t(s.samples) * s.side * s.side * s.in, 1), w = random_values<float>(9 * size_t(s.in) * s.out, 2),
+                             dy = random_values<float>(size_t(s.samples) * side_out * side_out * s.out, 3);
+    const ConvResult<float> one = run_conv<float>(s, Conv<float>::Method::kFastest, x, w, dy, 1, true, 0.25f);
+    const ConvResult<float> two = run_conv<float>(s, Conv<float>::Method::kFastest, x, w, dy, 2, true, 0.25f);
+    EXPECT_EQ(one.y, two.y);
+    EXPECT_EQ(one.dx, two.dx);
+    EXPECT_EQ(one.dw, two.dw);
+    const ConvResult<float> direct = run_conv<float>(s, Conv<float>::Method::kDirect, x, w, dy, 1, true, 0.25f);
+    EXPECT_LT(relative_error(one.y, direct.y), 3e-6);
+    EXPECT_LT(relative_error(one.dx, direct.dx), 3e-6);
+    EXPECT_LT(relative_error(one.dw, direct.dw), 1e-5);
+  }
+}
+
+// Rows [rows, channels] through a BatchNorm in three shards of different size.
+struct NormRun {
+  static constexpr int kShards = 3;
+  NormRun(size_t row_count, int channel_count) : rows(row_count), channels(channel_count), norm(channels), size(rows * channels) {
+    z = random_values<double>(size, 1);
+    for (size_t i = 0; i < size; ++i) z[i] = z[i] * (1 + i % channels) + i % channels;
+    gamma = random_values<double>(channels, 2);
+    beta = random_values<double>(channels, 3);
+    running_mean = random_values<double>(channels, 4);
+    running_variance.assign(channels, 2);
+  }
+  size_t begin(int shard) const { return shard == 0 ? 0 : shard == 1 ? rows / 5 : shard == 2 ? rows / 2 : rows; }
+  std::vector<double> forward() {
+    std::vector<double> mean = running_mean, variance = running_variance;
+    norm.begin(kShards);
+    for (int shard = kShards; shard-- > 0;)
+      norm.add_rows(shard, z.data() + begin(shard) * channels, begin(shard + 1) - begin(shard), mean.data());
+    norm.finish(rows, gamma.data(), beta.data(), mean.data(), variance.data());
+    mean_after = mean;
+    variance_after = variance;
+    std::vector<double> y(size);
+    for (size_t i = 0; i < size; ++i) y[i] = z[i] * norm.scale()[i % channels] + norm.shift()[i % channels];
+    return y;
+  }
+  size_t rows;
+  int channels;
+  BatchNorm<double> norm;
+  size_t size;
+  std::vector<double> z, gamma, beta, running_mean, running_variance, mean_after, variance_after;
+};
+
+TEST(BatchNorm, ForwardIsTheDefinition) {
+  NormRun run(150, 19);
+  const std::vector<double> y = run.forward();
+  for (int c = 0; c < run.channels; ++c) {
+    double mean = 0, variance = 0;
+    for (size_t r = 0; r < run.rows; ++r) mean += run.z[r * run.channels + c] / run.rows;
+    for (size_t r = 0; r < run.rows; ++r) variance += std::pow(run.z[r * run.channels + c] - mean, 2) / run.rows;
+    for (size_t r = 0; r < run.rows; ++r)
+      ASSERT_NEAR(y[r * run.channels + c], (run.z[r * run.channels + c] - mean) / std::sqrt(variance + 1e-5) * run.gamma[c] + run.beta[c], 1e-12);
+    EXPECT_NEAR(run.mean_after[c], 0.9 * run.running_mean[c] + 0.1 * mean, 1e-12);
+    EXPECT_NEAR(run.variance_after[c], 0.9 * 2 + 0.1 * variance * 150 / 149, 1e-11);
+  }
+}
+
+TEST(BatchNorm, BackwardIsFiniteDifferences) {
+  for (const int channels : {5, 8, 19}) {
+    NormRun run(100, channels);
+    const std::vector<double> d = random_values<double>(run.size, 9);
+    const auto loss = [&] { return inner_product(run.forward(), d); };
+    run.forward();
+    run.norm.begin_backward(NormRun::kShards);
+    for (int shard = 0; shard < NormRun::kShards; ++shard) {
+      const size_t at = run.begin(shard) * channels;
+      run.norm.add_backward_rows(shard, d.data() + at, run.z.data() + at, run.begin(shard + 1) - run.begin(shard));
+    }
+    std::vector<double> dgamma(channels, 0.5), dbeta(channels, 0.25), dz = d;
+    run.norm.finish_backward(run.rows, run.gamma.data(), dgamma.data(), dbeta.data());
+    run.norm.apply_backward(dz.data(), run.z.data(), dz.data(), run.rows);
+    for (size_t i = 0; i < run.size; i += 7) ASSERT_NEAR(dz[i], central_difference(run.z[i], 1e-5, loss), 1e-7);
+    for (int c = 0; c < channels; ++c) {
+      ASSERT_NEAR(dgamma[c], central_difference(run.gamma[c], 1e-3, loss) + 0.5, 1e-8);
+      ASSERT_NEAR(dbeta[c], central_difference(run.beta[c], 1e-3, loss) + 0.25, 1e-8);
+    }
+  }
+}
+
+TEST(BatchNorm, SquaresDoNotCancel) {
+  // A mean a thousand times the deviation, in float, with a running mean that knows it.
+  constexpr int kRows = 4096;
+  std::vector<float> z(kRows);
+  double sum = 0;
+  for (int i = 0; i < kRows; ++i) sum += z[i] = 1000 + float(i % 16) / 16;
+  float gamma = 1, beta = 0, mean = 1000, variance = 0;
+  BatchNorm<float> norm(1);
+  norm.begin(1);
+  norm.add_rows(0, z.data(), kRows, &mean);
+  norm.finish(kRows, &gamma, &beta, &mean, &variance);
+  EXPECT_NEAR(norm.mean()[0], sum / kRows, 1e-4);
+  EXPECT_NEAR(norm.inverse_sd()[0], 1 / std::sqrt((16 * 16 - 1) / 12.0 / 256 + 1e-5), 1e-4);
+}
+
+TEST(Norm, FrozenAndFusedPasses) {
+  constexpr int kRows = 7, kChannels = 21;
+  const std::vector<double> z = random_values<double>(kRows * kChannels, 1), shortcut = random_values<double>(kRows * kChannels, 2),
+                            gamma = random_values<double>(kChannels, 3), beta = random_values<double>(kChannels, 4),
+                            mean = random_values<double>(kChannels, 5);
+  std::vector<double> variance = random_values<double>(kChannels, 6), scale(kChannels), shift(kChannels);
+  for (double& v : variance) v = std::abs(v);
+  frozen_norm(kChannels, gamma.data(), beta.data(), mean.data(), variance.data(), scale.data(), shift.data());
+  std::vector<double> y(z.size()), plain(z.size()), normed(z.size());
+  norm_relu(z.data(), scale.data(), shift.data(), y.data(), kRows, kChannels);
+  norm_add_relu<double>(z.data(), scale.data(), shift.data(), shortcut.data(), nullptr, nullptr, plain.data(), kRows, kChannels);
+  norm_add_relu(z.data(), scale.data(), shift.data(), shortcut.data(), shift.data(), scale.data(), normed.data(), kRows, kChannels);
+  for (size_t i = 0; i < z.size(); ++i) {
+    const int c = int(i % kChannels);
+    const double value = (z[i] - mean[c]) / std::sqrt(variance[c] + 1e-5) * gamma[c] + beta[c];
+    ASSERT_NEAR(y[i], std::max(0.0, value), 1e-13);
+    ASSERT_NEAR(plain[i], std::max(0.0, value + shortcut[i]), 1e-13);
+    ASSERT_NEAR(normed[i], std::max(0.0, value + shortcut[i] * shift[c] + scale[c]), 1e-13);
+  }
+  std::vector<double> d(z.size(), 3);
+  relu_mask(d.data(), y.data(), d.size());
+  for (size_t i = 0; i < d.size(); ++i) ASSERT_EQ(d[i], y[i] > 0 ? 3 : 0);
+}
+
+struct DenseRun {
+  int rows = 70, in = 21, out = 18;
+  bool relu = true;
+  std::vector<double> x = random_values<double>(size_t(rows) * in, 1), w = random_values<double>(size_t(in) * out, 2), b = random_values<double>(out, 3);
+  Parallel parallel{2};
+  std::vector<double> forward() {
+    std::vector<double> y(size_t(rows) * out, kNan);
+    dense_forward(parallel, rows, in, out, x.data(), w.data(), b.data(), relu, y.data());
+    return y;
+  }
+};
+
+TEST(Dense, ForwardIsTheDefinition) {
+  DenseRun run;
+  for (const bool relu : {false, true}) {
+    run.relu = relu;
+    const std::vector<double> y = run.forward();
+    for (int r = 0; r < run.rows; ++r)
+      for (int c = 0; c < run.out; ++c) {
+        double sum = run.b[c];
+        for (int i = 0; i < run.in; ++i) sum += run.x[size_t(r) * run.in + i] * run.w[size_t(i) * run.out + c];
+        ASSERT_NEAR(y[size_t(r) * run.out + c], relu ? std::max(0.0, sum) : sum, 1e-13);
+      }
+  }
+  std::vector<double> without(size_t(run.rows) * run.out);
+  dense_forward<double>(run.parallel, run.rows, run.in, run.out, run.x.data(), run.w.data(), nullptr, false, without.data());
+  run.relu = false;
+  EXPECT_NEAR(without[1] + run.b[1], run.forward()[1], 1e-13);
+}
+
+TEST(Dense, BackwardIsFiniteDifferences) {
+  DenseRun run;
+  // A step moves a sum by 1e-7 at most: no ReLU may be nearer to its kink than that.
+  run.relu = false;
+  for (const double sum : run.forward()) ASSERT_GT(std::abs(sum), 1e-6);
+  const std::vector<double> dy = random_values<double>(size_t(run.rows) * run.out, 4);
+  const auto loss = [&] { return inner_product(run.forward(), dy); };
+  for (const bool relu : {false, true})
+    for (const bool add_dx : {false, true}) {
+      run.relu = relu;
+      const std::vector<double> y = run.forward();
+      std::vector<double> d = dy, dx(run.x.size(), add_dx ? 1 : kNan), dw(run.w.size(), 2), db(run.out, 3);
+      dense_backward(run.parallel, run.rows, run.in, run.out, run.x.data(), run.w.data(), relu ? y.data() : nullptr, d.data(), dx.data(), add_dx,
+                     dw.data(), db.data());
+      for (size_t i = 0; i < dx.size(); i += 11) ASSERT_NEAR(dx[i], central_difference(run.x[i], 1e-7, loss) + (add_dx ? 1 : 0), 1e-6);
+      for (size_t i = 0; i < dw.size(); i += 5) ASSERT_NEAR(dw[i], central_difference(run.w[i], 1e-7, loss) + 2, 1e-6);
+      for (size_t i = 0; i < db.size(); ++i) ASSERT_NEAR(db[i], central_difference(run.b[i], 1e-7, loss) + 3, 1e-6);
+    }
+}
+
+TEST(CrossEntropy, IsFiniteDifferences) {
+  std::vector<double> logits = random_values<double>(7, 1), gradient(7), unused(7);
+  for (double& logit : logits) logit *= 5;
+  const double loss = cross_entropy(logits.data(), 7, 3, 0.25, gradient.data());
+  double sum = 0;
+  for (const double logit : logits) sum += std::exp(logit);
+  EXPECT_NEAR(loss, std::log(sum) - logits[3], 1e-13);  // not weighted
+  for (int i = 0; i < 7; ++i)
+    EXPECT_NEAR(gradient[i], 0.25 * central_difference(logits[i], 1e-5, [&] { return cross_entropy(logits.data(), 7, 3, 1.0, unused.data()); }), 1e-9);
+}
+
+TEST(CrossEntropy, LargeScoresDoNotOverflow) {
+  const float logits[3] = {3e4f, -3e4f, 3e4f - 100};
+  float gradient[3];
+  EXPECT_EQ(cross_entropy(logits, 3, 0, 1.0f, gradient), 0);
+  EXPECT_EQ(gradient[0], 0);
+  EXPECT_EQ(cross_entropy(logits, 3, 1, 1.0f, gradient), 6e4);
+  EXPECT_EQ(gradient[1], -1);
+  const float equal[2] = {1e30f, 1e30f};
+  EXPECT_NEAR(cross_entropy(equal, 2, 1, 1.0f, gradient), std::log(2.0), 1e-7);
+}
+
+TEST(Argmax, TiesGoToTheFirst) {
+  const float values[4] = {1, 3, 3, 2};
+  EXPECT_EQ(argmax(values, 4), 1);
+}
+
+TEST(Adam, TwoStepsByHand) {
+  Parallel parallel(1);
+  const AdamOptions options = {0.1, 0.9, 0.999, 1e-8, 0.5};
+  double parameter = 2, m = 0, v = 0, average = 1;
+  double gradient = 3;
+  adam_step(parallel, options, 1, 1, &gradient, &parameter, &m, &v, &average, 0.75);
+  // g = 3 + 0.5 * 2 = 4; both corrected moments are g and g^2, so that the step is the learning rate.
+  EXPECT_NEAR(m, 0.4, 1e-15);
+  EXPECT_NEAR(v, 0.016, 1e-15);
+  EXPECT_NEAR(parameter, 1.9, 1e-9);
+  EXPECT_NEAR(average, 0.75 * 1 + 0.25 * 1.9, 1e-9);
+  gradient = -2.95;
+  adam_step(parallel, options, 2, 1, &gradient, &parameter, &m, &v);
+  // g = -2.95 + 0.5 * 1.9 = -2; m = 0.16, corrected by 1 - 0.81; v = 0.019984, corrected by 1 - 0.998001.
+  EXPECT_NEAR(m, 0.16, 1e-9);
+  EXPECT_NEAR(v, 0.019984, 1e-9);
+  EXPECT_NEAR(parameter, 1.9 - 0.1 * (0.16 / 0.19) / std::sqrt(0.019984 / 0.001999), 1e-8);
+}
+
+TEST(Adam, EveryParameterMovesByItself) {
+  // More values than one shard takes.
+  constexpr size_t kCount = 150001;
+  const AdamOptions options = {0.01, 0.9, 0.99, 1e-8, 0.1};
+  const std::vector<float> gradient = random_values<float>(kCount, 1), start = random_values<float>(kCount, 2);
+  std::vector<float> results[2];
+  for (const int threads : {1, 2}) {
+    Parallel parallel(threads);
+    std::vector<float> parameter = start, m(kCount, 0), v(kCount, 0), average = start;
+    for (int step = 1; step <= 3; ++step)
+      adam_step(parallel, options, step, kCount, gradient.data(), parameter.data(), m.data(), v.data(), average.data(), 0.5);
+    for (size_t i = 0; i < kCount; i += 997) {
+      double p = start[i], first = 0, second = 0, mean = start[i];
+      for (int step = 1; step <= 3; ++step) {
+        const double g = gradient[i] + 0.1 * p;
+        first = 0.9 * first + 0.1 * g;
+        second = 0.99 * second + 0.01 * g * g;
+        p -= 0.01 * (first / (1 - std::pow(0.9, step))) / (std::sqrt(second / (1 - std::pow(0.99, step))) + 1e-8);
+        mean = 0.5 * mean + 0.5 * p;
+      }
+      ASSERT_NEAR(parameter[i], p, 2e-6);
+      ASSERT_NEAR(average[i], mean, 2e-6);
+    }
+    results[threads - 1] = parameter;
+  }
+  EXPECT_EQ(results[0], results[1]);
+}
+
+TEST(Layout, TensorsAreAlignedAndApart) {
+  Layout layout;
+  EXPECT_EQ(layout.add("a", {3, 5}), 0u);
+  EXPECT_EQ(layout.add("b", {17}), 16u);
+  EXPECT_EQ(layout.add("c", {}), 48u);
+  EXPECT_EQ(layout.total(), 64u);
+  EXPECT_EQ(layout.find("b")->size, 17u);
+  EXPECT_EQ(layout.find("d"), nullptr);
+}
+
+TEST(Buffer, GrowsAndMoves) {
+  Buffer<float> buffer(10);
+  EXPECT_EQ(reinterpret_cast<uintptr_t>(buffer.data()) % 64, 0u);
+  float* const data = buffer.data();
+  EXPECT_EQ(buffer.grow(5), data);
+  EXPECT_EQ(buffer.size(), 10u);
+  buffer[9] = 4;
+  Buffer<float> other = std::move(buffer);
+  EXPECT_EQ(other[9], 4);
+  other.zero();
+  EXPECT_EQ(other[9], 0);
+  other.grow(100000);
+  EXPECT_EQ(other.size(), 100000u);
+}
+
+}  // namespace
+}  // namespace synpo
