@@ -22,6 +22,15 @@ PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu
 
 BENCH_PACKAGES := python3-torch libopenblas0-openmp
 
+# Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs them.
+MAKEFLAGS += -j$(shell nproc)
+ifneq ($(filter deps,$(MAKECMDGOALS)),)
+$(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ): | deps
+endif
+ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
+bench check-torch: | deps-bench
+endif
+
 .PHONY: all lib check bench demo deps deps-bench install clean check-torch
 all: $(TOOLS:%=$(B)/%)
 lib: $(B)/libsynpo.a

@@ -6,6 +6,7 @@
 #include "base/hash.h"
 #include "base/options.h"
 #include "base/progress.h"
+#include "base/signals.h"
 #include "format/matrix.h"
 #include "learn/evaluate.h"
 #include "learn/model.h"
@@ -58,6 +59,7 @@ int body(int argc, char** argv) {
   if (!record_path.empty()) record = std::make_unique<Output>(record_path);
   if (!records_to_stdout || output_path != "-") output = std::make_unique<Output>(output_path);
 
+  catch_stop_signals();
   Parallel parallel{int(threads)};
   std::vector<std::pair<int, int>> numbers;
   std::vector<EvalEpisode> episodes;
@@ -71,7 +73,10 @@ int body(int argc, char** argv) {
   if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
   const std::vector<PairResult> results =
       evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, kGridStepLimit}, sink,
-               [&](size_t done) { progress.update(done); });
+               [&](size_t done) {
+                 progress.update(done);
+                 stop_if_asked();
+               });
   progress.finish();
   if (record) record->finish();
   if (!output) return 0;

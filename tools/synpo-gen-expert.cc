@@ -3,6 +3,7 @@
 #include "base/io.h"
 #include "base/options.h"
 #include "base/progress.h"
+#include "base/signals.h"
 #include "learn/episode.h"
 
 using namespace synpo;
@@ -13,6 +14,7 @@ void relabel(const GridSet& world, Output& output) {
   Input input("-");
   std::string line;
   while (input.line(line)) {
+    stop_if_asked();
     try {
       output.write(format_trajectory(relabelled(world, parse_trajectory(line, kGridActions, kGridStepLimit))) + "\n");
     } catch (const Error& error) {
@@ -44,6 +46,7 @@ int gen_expert(int argc, char** argv) {
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
   if (per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
 
+  catch_stop_signals();
   const GridSet world = GridSet::open(world_name);
   Output output(output_path);
   if (relabel_stream) {
@@ -68,6 +71,7 @@ int gen_expert(int argc, char** argv) {
     const int64_t episode = per_pair > 0 ? i % per_pair : i;
     output.write(format_trajectory(expert_episode(world, pairs[pick], seed, episode, noise, int(window))) + "\n");
     progress.update(uint64_t(i + 1));
+    stop_if_asked();
   }
   output.finish();
   return 0;

@@ -15,6 +15,7 @@
 
 #include "base/error.h"
 #include "base/io.h"
+#include "base/signals.h"
 
 namespace synpo {
 
@@ -190,6 +191,8 @@ int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char
     return body(argc, argv);
   } catch (const Error& error) {
     return report(error.code(), error.what());
+  } catch (const Stopped& stopped) {
+    return 128 + stopped.signal;
   } catch (const std::bad_alloc&) {
     return report(Exit::kInternal, "out of memory");
   } catch (const std::exception& error) {

@@ -42,6 +42,7 @@ struct Parallel::Pool {
       } catch (...) {
         std::lock_guard lock(mutex);
         if (!error) error = std::current_exception();
+        next = shards;  // nobody wants the rest
       }
     }
   }

@@ -18,4 +18,8 @@ void catch_stop_signals() {
 
 int stop_signal() { return caught; }
 
+void stop_if_asked() {
+  if (caught) throw Stopped{caught};
+}
+
 }  // namespace synpo

@@ -88,7 +88,10 @@ Checkpoint read_checkpoint(Input& input) {
     c.seed = uint64_t(whole(file, "seed"));
     c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
     c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();
-    c.shape = structure(file, "shape").get<std::map<std::string, int64_t>>();
+    const Json shape = structure(file, "shape");
+    for (const auto& [name, size] : shape.items())
+      if (!size.is_number_integer()) fail(Exit::kData, "metadata 'shape': ", quoted(name), " is no whole number");
+    c.shape = shape.get<std::map<std::string, int64_t>>();
     c.options = structure(file, "options").get<std::map<std::string, std::string>>();
     for (const Json& env : structure(file, "envs"))
       c.envs.push_back({env.at("name").get<std::string>(), parse_hex(env.at("hash").get<std::string>()), env.at("content").get<std::string>()});

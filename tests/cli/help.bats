@@ -83,7 +83,7 @@ man_options() {
     fails 64 synpo-gen-expert -n 1 -w atari
     says "atari"
     fails 64 synpo-eval -n 0
-    fails 64 synpo-train
+    fails 64 synpo-train -n 0
     fails 64 synpo-train -n 1 --time 5s
     fails 64 synpo-train --time 5parsecs
     fails 64 synpo-train -n 1 --recipe slow

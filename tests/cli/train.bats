@@ -45,6 +45,15 @@ setup() {
     done
 }
 
+@test "a resumed run continues its log" {
+    synpo-train "${TINY[@]}" -n 6 --log unbroken.tsv --report 1 <e.jsonl >/dev/null
+    synpo-train "${TINY[@]}" -n 3 --log log.tsv --report 1 <e.jsonl >part
+    synpo-train -q --resume part -n 6 --log log.tsv --report 1 <e.jsonl >/dev/null
+    # All but the times.
+    cut -f 1-3,6- unbroken.tsv >want
+    cut -f 1-3,6- log.tsv | cmp want -
+}
+
 @test "resuming what is done changes nothing and needs no stream" {
     synpo-train "${TINY[@]}" -n 2 <e.jsonl >a
     synpo-train -q --resume a <e.jsonl >b

@@ -419,12 +419,16 @@ TEST(Checkpoint, RefusesOtherMetadata) {
   for (const char* key : {"rules", "window", "updates", "states", "seed"})
     for (const char* value : {"-1", "1.5", "\"1\"", "", "[]", "1e30", "18446744073709551616"})
       EXPECT_EQ(checkpoint_refused(key, value), concat("65 cannot read IN: metadata '", key, "': found '", value, "', expected a whole number from 0"));
-  for (const char* key : {"tasks", "seen", "shape", "options", "envs"}) {
+  const std::string malformed = "65 cannot read IN: malformed metadata (", deep = std::string(100000, '[') + std::string(100000, ']');
+  for (const char* key : {"tasks", "seen", "options", "envs"}) {
     EXPECT_EQ(checkpoint_refused(key, "{"), concat("65 cannot read IN: metadata '", key, "': no JSON"));
-    for (const char* value : {"3", "[3]", "{\"a\":[]}"})
-      EXPECT_TRUE(checkpoint_refused(key, value).starts_with("65 cannot read IN: malformed metadata (")) << key << " " << value;
-    EXPECT_TRUE(checkpoint_refused(key, std::string(100000, '[') + std::string(100000, ']')).starts_with("65 cannot read IN: malformed metadata (")) << key;
+    for (const std::string& value : {std::string("3"), std::string("[3]"), std::string("{\"a\":[]}"), deep})
+      EXPECT_TRUE(checkpoint_refused(key, value).starts_with(malformed)) << key << " " << quoted(value);
   }
+  EXPECT_EQ(checkpoint_refused("shape", "{"), "65 cannot read IN: metadata 'shape': no JSON");
+  for (const char* value : {"3", "[3]"}) EXPECT_TRUE(checkpoint_refused("shape", value).starts_with(malformed)) << value;
+  for (const char* value : {"1.5", "1e300", "true", "\"1\"", "[]", "null"})
+    EXPECT_EQ(checkpoint_refused("shape", concat("{\"a\":", value, "}")), "65 cannot read IN: metadata 'shape': 'a' is no whole number") << value;
 }
 
 TEST(RunLog, WritesARowAReport) {

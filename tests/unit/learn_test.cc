@@ -153,7 +153,7 @@ TEST(ResolvePairs, ByName) {
   const std::vector<PairRow> rows = {{"map2", "R-B", true, ""}, {"map1", "P-O", false, ""}};
   EXPECT_EQ(resolve_pairs(builtin_world(), rows, false), (std::vector<EnvTask>{{1, 0}, {0, 19}}));
   EXPECT_EQ(resolve_pairs(builtin_world(), rows, true), (std::vector<EnvTask>{{1, 0}}));
-  EXPECT_EQ(thrown([] { resolve_pairs(builtin_world(), {{"map0", "R-B", true, ""}}, false); }), "65 pairs: unknown env 'map0' (other maps? see -w)");
+  EXPECT_EQ(thrown([] { resolve_pairs(builtin_world(), {{"map0", "R-B", true, ""}}, false); }), "65 pairs: unknown env 'map0' (other maps?)");
   EXPECT_EQ(thrown([] { resolve_pairs(builtin_world(), {{"map1", "R", false, ""}}, true); }), "65 pairs: unknown task 'R'");
 }
 
@@ -324,7 +324,7 @@ TEST(Model, ComesBack) {
   again.options = checkpoint.options;
   add_tensors(again.file, "", model.policy->parameters(), model.parameters.data());
   add_tensors(again.file, "", model.policy->statistics(), model.statistics.data());
-  EXPECT_EQ(format_checkpoint(again), contents("tests/data/v1/checkpoint.safetensors"));
+  EXPECT_TRUE(format_checkpoint(again) == contents("tests/data/v1/checkpoint.safetensors")) << "bytes differ";
 }
 
 TEST(Model, RefusesCheckpointsThatDoNotFit) {
@@ -346,10 +346,9 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs.pop_back(); }), "65 the network's shape does not fit the world");
   EXPECT_EQ(refused([](Checkpoint& c) { c.tasks.pop_back(); }), "65 the checkpoint's tasks are not this build's");
   EXPECT_EQ(refused([](Checkpoint& c) { c.method = "mlp"; }), "65 unknown method 'mlp', this build has synpo");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }), "65 pairs: unknown env 'map9' (other maps? see -w)");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }), "65 pairs: unknown env 'map9' (other maps?)");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape.erase("basis"); }), "65 the shape has no 'basis'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 0; }), "65 shape 'hidden': found 0, expected a whole number from 1 to 65536");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 1.5; }), "65 shape 'hidden': found 1.5, expected a whole number from 1 to 65536");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 9; }), "65 tensor 'alpha.hidden.weight': found 64 values, expected 72");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["actions"] = 6; }), "65 the network's shape does not fit the world");
   EXPECT_EQ(refused([](Checkpoint& c) { c.file.tensors.erase("theta"); }), "65 no tensor 'theta'");

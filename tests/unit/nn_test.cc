@@ -99,6 +99,44 @@ TEST(Gemm, TheSameCallGivesTheSameBits) {
   EXPECT_EQ(first, second);
 }
 
+TEST(Gemm, ARowDependsOnNothingButThatRow) {
+  constexpr int kM = 37, kN = 45, kK = 600;
+  const std::vector<float> a = random_values<float>(kM * kK, 1), b = random_values<float>(kK * kN, 2);
+  std::vector<float> whole(kM * kN), row(kN);
+  gemm(Op::kAsIs, Op::kAsIs, kM, kN, kK, a.data(), kK, b.data(), kN, whole.data(), kN);
+  for (int i = 0; i < kM; ++i) {
+    gemm(Op::kAsIs, Op::kAsIs, 1, kN, kK, a.data() + i * kK, kK, b.data(), kN, row.data(), kN);
+    ASSERT_TRUE(std::equal(row.begin(), row.end(), whole.begin() + i * kN)) << i;
+  }
+}
+
+TEST(Gemm, APackedMatrixIsGoodForManyProducts) {
+  Packed<float> packed;
+  for (const auto& [n, k] : {std::pair(70, 515), std::pair(33, 20), std::pair(5, 300)})
+    for (const Op op : {Op::kAsIs, Op::kTransposed}) {
+      const int stride = (op == Op::kAsIs ? n : k) + 3, rows = op == Op::kAsIs ? k : n;
+      const std::vector<float> b = random_values<float>(size_t(rows) * stride, 1);
+      packed.pack(op, k, n, b.data(), stride);
+      EXPECT_EQ(packed.k(), k);
+      EXPECT_EQ(packed.n(), n);
+      for (const int m : {1, 12, 29}) {
+        const std::vector<float> a = random_values<float>(size_t(m) * k, 2);
+        std::vector<float> got(size_t(m) * n, 1), want(size_t(m) * n, 1);
+        gemm(Op::kAsIs, m, a.data(), k, packed, got.data(), n, true);
+        gemm(Op::kAsIs, op, m, n, k, a.data(), k, b.data(), stride, want.data(), n, true);
+        EXPECT_EQ(got, want);
+      }
+    }
+}
+
+TEST(Gemm, NothingToSumIsZero) {
+  std::vector<float> c(6, 7);
+  gemm<float>(Op::kAsIs, Op::kAsIs, 2, 3, 0, nullptr, 0, nullptr, 3, c.data(), 3, true);
+  EXPECT_EQ(c, std::vector<float>(6, 7));
+  gemm<float>(Op::kAsIs, Op::kAsIs, 2, 3, 0, nullptr, 0, nullptr, 3, c.data(), 3);
+  EXPECT_EQ(c, std::vector<float>(6, 0));
+}
+
 TEST(Dot, IsTheSumOfProducts) {
   for (int n = 0; n < 70; ++n) {
     const std::vector<float> a = random_values<float>(n, 1), b = random_values<float>(n, 2);
