@@ -12,7 +12,7 @@ class Parallel {
   ~Parallel();
   int threads() const;
   // Calls work(shard, thread) for every shard in [0, shards), with thread in [0, threads()), for scratch memory only. Returns when
-  // all are done. An exception is passed on.
+  // all are done. An exception is passed on. Numbers too small for a normal float count as zero in `work`.
   void run(int shards, const std::function<void(int shard, int thread)>& work);
 
  private:
