@@ -352,6 +352,17 @@ TEST(Parallel, PassesExceptionsOn) {
   }
 }
 
+TEST(Parallel, DenormalNumbersCountAsZeroInWork) {
+  const volatile float tiny = 1e-40f;
+  for (const int threads : {1, 2}) {
+    Parallel parallel(threads);
+    std::array<float, 16> doubled;
+    parallel.run(16, [&](int shard, int) { doubled[shard] = 2 * tiny; });
+    for (const float value : doubled) EXPECT_EQ(value, 0);
+    EXPECT_GT(2 * tiny, 0);
+  }
+}
+
 TEST(Parallel, ShardsCoverTheRange) {
   for (const int n : {0, 1, 31, 32, 33, 100}) {
     int next = 0;

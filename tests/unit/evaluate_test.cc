@@ -105,12 +105,12 @@ TEST(Evaluate, AgreesWithEpisodesPlayedOneByOne) {
 
 TEST(Evaluate, DependsNeitherOnThreadsNorOnOrderNorOnOtherEpisodes) {
   // Enough for several lists that refill their lanes.
-  const std::vector<EvalEpisode> episodes = episodes_of(0, 400);
+  const std::vector<EvalEpisode> episodes = episodes_of(0, 220);
   const std::vector<PairResult> all = run(hashed, episodes, 1);
   std::vector<EvalEpisode> reversed(episodes.rbegin(), episodes.rend());
   const std::vector<PairResult> two = run(hashed, episodes, 2), other_order = run(hashed, reversed, 2);
   std::vector<PairResult> parts(kPairs.size());
-  for (const auto& [first, count] : {std::pair<int64_t, int64_t>{0, 1}, {1, 10}, {11, 53}, {64, 336}}) {
+  for (const auto& [first, count] : {std::pair<int64_t, int64_t>{0, 1}, {1, 10}, {11, 53}, {64, 156}}) {
     const std::vector<PairResult> part = run(hashed, episodes_of(first, count), 2);
     for (size_t p = 0; p < kPairs.size(); ++p) parts[p].add(part[p]);
   }
