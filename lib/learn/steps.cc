@@ -92,7 +92,8 @@ void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t nu
 }
 
 void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch) {
-  if (running_.empty()) running_.assign(std::max(options_.episodes, count), Running{});
+  // Never fewer than a minibatch takes: an episode is drawn once.
+  if (running_.size() < size_t(count)) running_.resize(std::max(options_.episodes, count), Running{});
   batch.resize(count);
   drawn_.resize(count);
   moves_.resize(count);
@@ -139,7 +140,7 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
 void RunningDraw::advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update) {
   for (size_t i = 0; i < drawn_.size(); ++i) {
     const uint32_t number = drawn_[i];
-    Random random(seed_, Purpose::kNoise, number, uint64_t(update));
+    Random random(seed_, Purpose::kOwnMove, number, uint64_t(update));
     const bool own = options_.roll_in > 0 && random.uniform() < options_.roll_in;
     step(memory, running_[number], number, own ? greedy[i] : moves_[i]);
   }
@@ -170,7 +171,7 @@ void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const
   int64_t next = 0;
   file.get(prefix + "next", &next, 1);
   const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "running' is malformed"); };
-  if (words.size() % kWords != 0) bad();
+  if (words.size() % kWords != 0 || (!words.empty() && words.size() / kWords < size_t(options_.episodes))) bad();
   running_.assign(words.size() / kWords, Running{});
   if (next < 0 || (next > 0 && size_t(next) >= running_.size())) bad();
   next_ = size_t(next);

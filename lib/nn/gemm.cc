@@ -79,8 +79,8 @@ void Packed<T>::pack(Op op, int k, int n, const T* b, int ldb) {
           }
         }
       } else {
-        for (int c = 0; c < kTileColumns; ++c)
-          for (int r = 0; r < rows; ++r) to[size_t(r) * kTileColumns + c] = c < columns ? b[size_t(first + c) * ldb + begin + r] : T(0);
+        for (int r = 0; r < rows; ++r)
+          for (int c = 0; c < kTileColumns; ++c) *to++ = c < columns ? b[size_t(first + c) * ldb + begin + r] : T(0);
       }
     }
   }
