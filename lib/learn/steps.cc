@@ -69,23 +69,25 @@ void RunningDraw::restart(const ReplayMemory& memory, Running& running, uint32_t
   running.history.push(running.state.now);
 }
 
-void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const {
+const GridEpisode* RunningDraw::followed(const ReplayMemory& memory, const Running& running) {
+  if (!running.following || memory.serial(running.place) != running.serial) return nullptr;
   const GridEpisode& episode = memory[running.place];
   // A recorded trajectory may break off before its episode ends.
-  if (running.following && memory.serial(running.place) == running.serial && running.state.steps < episode.actions.size()) {
-    label = episode.labels[running.state.steps];
-    move = episode.actions[running.state.steps];
+  return running.state.steps < episode.actions.size() ? &episode : nullptr;
+}
+
+void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const {
+  if (const GridEpisode* episode = followed(memory, running)) {
+    label = episode->labels[running.state.steps];
+    move = episode->actions[running.state.steps];
   } else {
     label = move = world_->planner(running.pair.env).action(world_->tasks()[running.pair.task], running.state);
   }
 }
 
 void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
-  if (running.following) {
-    const GridEpisode& episode = memory[running.place];
-    const bool there = memory.serial(running.place) == running.serial && running.state.steps < episode.actions.size();
-    running.following = there && episode.actions[running.state.steps] == action;
-  }
+  const GridEpisode* episode = followed(memory, running);
+  running.following = episode && episode->actions[running.state.steps] == action;
   const GridStep step = grid_step(world_->maze(running.pair.env), world_->tasks()[running.pair.task], running.state, action);
   running.history.push(running.state.now);
   if (step.ended() || running.state.steps >= options_.step_limit) restart(memory, running, number);

@@ -70,6 +70,8 @@ class RunningDraw {
     bool started;
   };
   void restart(const ReplayMemory& memory, Running& running, uint32_t number);
+  // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.
+  static const GridEpisode* followed(const ReplayMemory& memory, const Running& running);
   void label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const;
   // One step; restarts where the episode ends.
   void step(const ReplayMemory& memory, Running& running, uint32_t number, int action);

@@ -11,7 +11,7 @@ namespace {
 template <class T>
 using Vec = typename Lanes<T>::Vec;
 
-// Tile [kRows, kTileColumns] of C += A panel. Element (i, p) of A is a[i * step_i + p * step_p].
+// Tile [kRows, kTileColumns] of C += A panel. Element (i, p) of A is a[i * lda + p], or a[p * lda + i] where it is transposed.
 template <class T, int kRows, bool kTransposed>
 inline void tile(int depth, const T* a, int lda, const T* panel, T* c, int ldc, int columns, bool accumulate) {
   constexpr int kLanes = Lanes<T>::kCount;
