@@ -1,7 +1,7 @@
 # synpo: make deps installs what is needed, make builds into build/, make check tests, make demo shows it at work.
 
 CXX      ?= g++
-CXXFLAGS ?= -O3 -march=native
+CXXFLAGS ?= -O3
 PREFIX   ?= /usr/local
 B        := build
 
@@ -11,7 +11,13 @@ OPENCV_LIBS   = -lopencv_freetype -lopencv_imgcodecs -lopencv_imgproc -lopencv_c
 
 TOOLS    := synpo-gen-expert synpo-train synpo-eval synpo-matrix synpo-render
 LIB_SRC  := $(wildcard lib/*/*.cc)
-LIB_OBJ  := $(LIB_SRC:%.cc=$(B)/%.o) $(B)/builtin_maps.o
+# The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
+TARGETS  := plain $(if $(filter x86_64,$(shell $(CXX) -dumpmachine | cut -d- -f1)),avx2 avx512 amx)
+TARGET_avx2   := -mavx2 -mfma
+TARGET_avx512 := $(TARGET_avx2) -mavx512f -mavx512bw -mavx512dq -mavx512vl
+TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GCC 12 warns of its own header
+KERNEL_OBJ := $(TARGETS:%=$(B)/lib/kernel/target_%.o)
+LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o
 TOOL_SRC := $(wildcard tools/*.cc)
 TEST_SRC := $(wildcard tests/unit/*.cc)
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
@@ -54,6 +60,10 @@ $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
 
 # Only the drawing room, its tool and its tests see OpenCV.
 $(B)/lib/draw/%.o $(B)/tests/unit/draw%.o: ALL_CXXFLAGS += $(OPENCV_CFLAGS)
+
+$(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
+	@mkdir -p $(@D)
+	$(CXX) $(ALL_CXXFLAGS) -Wno-psabi $(TARGET_$*) -DSYNPO_TARGET=$* -c -o $@ $<
 
 $(B)/%.o: %.cc
 	@mkdir -p $(@D)

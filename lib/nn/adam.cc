@@ -1,25 +1,24 @@
 #include "nn/adam.h"
 
+#include "kernel/kernels.h"
+
 namespace synpo {
 
 template <class T>
 void adam_step(Parallel& parallel, const AdamOptions& options, int64_t step, size_t count, const T* gradient, T* parameter, T* m, T* v,
                T* average, double averaging) {
-  const T beta1 = T(options.beta1), beta2 = T(options.beta2), decay = T(options.weight_decay);
-  const T rate = T(options.learning_rate / (1 - std::pow(options.beta1, double(step))));
-  const T correction = T(1 / std::sqrt(1 - std::pow(options.beta2, double(step)))), epsilon = T(options.epsilon);
-  const T keep = T(averaging);
+  AdamFactors<T> factors;
+  factors.beta1 = T(options.beta1);
+  factors.beta2 = T(options.beta2);
+  factors.decay = T(options.weight_decay);
+  factors.rate = T(options.learning_rate / (1 - std::pow(options.beta1, double(step))));
+  factors.correction = T(1 / std::sqrt(1 - std::pow(options.beta2, double(step))));
+  factors.epsilon = T(options.epsilon);
+  factors.keep = T(averaging);
   constexpr size_t kPart = 1 << 16;
   parallel.run(int((count + kPart - 1) / kPart), [&](int shard, int) {
-    const size_t begin = shard * kPart, end = begin + kPart < count ? begin + kPart : count;
-    for (size_t i = begin; i < end; ++i) {
-      const T g = gradient[i] + decay * parameter[i];
-      m[i] = beta1 * m[i] + (1 - beta1) * g;
-      v[i] = beta2 * v[i] + (1 - beta2) * g * g;
-      parameter[i] -= rate * m[i] / (std::sqrt(v[i]) * correction + epsilon);
-    }
-    if (average)
-      for (size_t i = begin; i < end; ++i) average[i] = keep * average[i] + (1 - keep) * parameter[i];
+    const size_t begin = shard * kPart, size = begin + kPart < count ? kPart : count - begin;
+    kernels<T>().adam(size, factors, gradient + begin, parameter + begin, m + begin, v + begin, average ? average + begin : nullptr);
   });
 }
 

@@ -1,4 +1,8 @@
 // Convolutions on small square pictures in NHWC order, as matrix products over pixels.
+//
+// The forms of kernel/bilinear.h write a convolution as several products of a transformed picture with a transformed weight; every other
+// convolution is one product with gathered pixels. In both cases: inputs [products, rows, depth] from x, outputs [products, rows, out] =
+// inputs factors, y from outputs; the gradients use the adjoint of each of these maps.
 #pragma once
 #include <vector>
 
@@ -25,50 +29,51 @@ class Conv {
   // Multiply-adds that one sample's forward pass executes in matrix products.
   size_t multiply_adds() const { return size_t(products_) * rows_ * depth_ * out_; }
 
-  // Takes the weight over; to be called after every change of it. Without `training`, for forward() alone.
-  void prepare(Parallel& parallel, const T* weight, bool training = true);
+  // Takes product p of the weight over, p < products(); all are due after every change of it, from any threads. Without `training`, for
+  // forward() alone.
+  int products() const { return products_; }
+  void prepare(int p, const T* weight, bool training);
 
-  // Samples that are worth passing to forward() at once.
-  int unit() const { return side_out_ > 4 ? 16 : 32; }
+  // Samples that are worth passing to forward() at once: transformed, they fit the second-level cache, and each weight that comes from further
+  // away serves as many rows as may be.
+  int unit() const { return side_out_ > 4 ? 16 : side_out_ > 2 ? 32 : 64; }
   // One thread. `scratch` belongs to the thread.
   void forward(int samples, const T* x, T* y, Buffer<T>& scratch) const;
 
-  struct Workspace {
-    Buffer<T> inputs, outputs, dweight;
-    std::vector<Buffer<T>> scratch;  // one a thread
+  // Backward, in three parts. The batch is taken in slabs of at most kSlab samples, so that memory does not grow with it. First, parts of a slab,
+  // on any threads: dx (may be null) = or, where add_dx, += the input's gradient; what the weight's gradient needs is kept in the slab.
+  static constexpr int kSlab = 512;
+  struct Slab {
+    Buffer<T> inputs, outputs;
   };
-  // dweight += the weight's gradient; dx (may be null) = or, where add_dx, += the input's. All threads.
-  void backward(Parallel& parallel, int samples, const T* x, const T* dy, T* dx, bool add_dx, T* dweight, Workspace& work) const;
+  void reserve(Slab& slab, int samples) const;
+  void backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const;
+  // Then, when all parts of the slab are done, the gradient of the transformed weight, in shards: dfactors [dfactors_size()] = or +=.
+  int gradient_shards() const { return products_ * shard_count(depth_, gradient_rows_); }
+  void weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
+  size_t dfactors_size() const { return size_t(products_) * depth_ * out_; }
+  // At last, where the form is a transformed one, tap by tap: dweight = the weight's gradient. Otherwise dfactors is that.
+  bool transformed() const { return form_ == Form::kWinograd || form_ == Form::kToeplitz; }
+  static constexpr int kTaps = 9;
+  void finish_gradient(int tap, const T* dfactors, T* dweight) const;
 
  private:
   enum class Form { kPlain, kGathered, kWinograd, kToeplitz };
-  template <class Algorithm>
-  void gather_tiles(int samples, const T* x, T* inputs, size_t product_stride) const;
-  template <class Algorithm>
-  void scatter_tiles(int samples, const T* outputs, size_t product_stride, T* y) const;
-  template <class Algorithm>
-  void gather_tiles_adjoint(int samples, const T* dinputs, size_t product_stride, T* dx) const;
-  template <class Algorithm>
-  void scatter_tiles_adjoint(int samples, const T* dy, T* doutputs, size_t product_stride) const;
   template <class Body>
   void for_taps(Body&& body) const;
   void gather_pixels(int samples, const T* x, T* inputs) const;
   void gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const;
-
-  // inputs [products, rows, depth] from x; y from outputs [products, rows, out]; and their transposes.
-  void gather(int samples, const T* x, T* inputs, size_t product_stride) const;
-  void scatter(int samples, const T* outputs, size_t product_stride, T* y) const;
-  void gather_adjoint(int samples, const T* dinputs, size_t product_stride, T* dx) const;
-  void scatter_adjoint(int samples, const T* dy, T* doutputs, size_t product_stride) const;
-  bool transformed() const { return form_ == Form::kWinograd || form_ == Form::kToeplitz; }
+  const Transform<T>& transform() const;
+  TileShape tiles(int channels, int samples, size_t rows) const { return {side_, channels, samples, rows}; }
 
   int side_, in_, out_, kernel_, stride_, side_out_;
   Form form_;
   int products_;  // matrix products of the form
   int rows_;      // of each product, for one sample
   int depth_;     // inner extent of each product
-  Buffer<T> weight_;  // [products, depth, out]
-  std::vector<Packed<T>> forward_, backward_;  // the same, a matrix each, and transposed
+  int gradient_rows_;  // rows of the weight's gradient in a shard
+  std::vector<T> taps_;  // what a product's weight takes of each tap, [products, taps]
+  std::vector<Packed<T>> forward_, backward_;  // a product's weight each, and transposed
 };
 
 extern template class Conv<float>;

@@ -1,9 +1,6 @@
 #include "nn/dense.h"
 
-#include <algorithm>
-
 #include "nn/gemm.h"
-#include "nn/norm.h"
 
 namespace synpo {
 namespace {
@@ -18,7 +15,7 @@ const Packed<T>& packed(Op op, int k, int n, const T* w, int ldw) {
   return weight;
 }
 
-}
+}  // namespace
 
 template <class T>
 void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* b, bool relu, T* y) {
@@ -27,11 +24,7 @@ void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, co
     const Range range = shard_range(rows, kRows, shard);
     T* to = y + size_t(range.begin) * out;
     gemm(Op::kAsIs, range.size(), x + size_t(range.begin) * in, in, weight, to, out);
-    for (int r = 0; r < range.size(); ++r, to += out)
-      for (int c = 0; c < out; ++c) {
-        const T value = to[c] + (b ? b[c] : T(0));
-        to[c] = relu ? std::max(value, T(0)) : value;
-      }
+    if (b || relu) kernels<T>().add_bias(range.size(), out, b, relu, to);
   });
 }
 
@@ -42,10 +35,10 @@ void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, c
   parallel.run(shard_count(rows, kRows), [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
     T* d = dy + size_t(range.begin) * out;
-    if (relu_y) relu_mask(d, relu_y + size_t(range.begin) * out, size_t(range.size()) * out);
+    if (relu_y) kernels<T>().relu_mask(size_t(range.size()) * out, d, relu_y + size_t(range.begin) * out);
     if (dx) gemm(Op::kAsIs, range.size(), d, out, *weight, dx + size_t(range.begin) * in, in, add_dx);
   });
-  constexpr int block = 48;
+  constexpr int block = 64;
   parallel.run(shard_count(in, block) + 1, [&](int shard, int) {
     if (shard == 0) {
       if (db)

@@ -3,21 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nn/lanes.h"
+#include "kernel/kernels.h"
 
 namespace synpo {
-namespace {
-constexpr size_t kBlock = 64;  // rows summed in T before they are added to the double sums
-
-// sums[i] += lane i of v.
-template <class T, class V>
-void add_lanes(double* sums, const V& v) {
-  T lanes[sizeof(V) / sizeof(T)];
-  store(lanes, v);
-  for (size_t i = 0; i < sizeof(V) / sizeof(T); ++i) sums[i] += lanes[i];
-}
-
-}  // namespace
 
 void ChannelSums::reset(int shards, int channels, int kinds) {
   shards_ = shards;
@@ -35,23 +23,7 @@ std::vector<double> ChannelSums::total(int kind) const {
 
 template <class T>
 void BatchNorm<T>::add_rows(int shard, const T* z, size_t rows, const T* running_mean) {
-  double* sum = sums_.shard(shard, 0);
-  double* squares = sums_.shard(shard, 1);
-  for (size_t begin = 0; begin < rows; begin += kBlock) {
-    const size_t end = std::min(rows, begin + kBlock);
-    for_lanes<T>(channels_, [&](auto tag, int c) {
-      using V = decltype(tag);
-      const V shift = load<V>(running_mean + c);
-      V s{}, q{};
-      for (size_t row = begin; row < end; ++row) {
-        const V value = load<V>(z + row * channels_ + c) - shift;
-        s += value;
-        q += value * value;
-      }
-      add_lanes<T>(sum + c, s);
-      add_lanes<T>(squares + c, q);
-    });
-  }
+  kernels<T>().add_moments(rows, channels_, z, running_mean, sums_.shard(shard, 0), sums_.shard(shard, 1));
 }
 
 template <class T>
@@ -73,24 +45,13 @@ void BatchNorm<T>::finish(size_t rows, const T* gamma, const T* beta, T* running
 }
 
 template <class T>
-void BatchNorm<T>::add_backward_rows(int shard, const T* d, const T* z, size_t rows) {
+void BatchNorm<T>::add_backward_rows(int shard, const T* d, const T* z, size_t rows, bool masked) {
   double* sum = sums_.shard(shard, 0);
   double* products = sums_.shard(shard, 1);
-  for (size_t begin = 0; begin < rows; begin += kBlock) {
-    const size_t end = std::min(rows, begin + kBlock);
-    for_lanes<T>(channels_, [&](auto tag, int c) {
-      using V = decltype(tag);
-      const V mean = load<V>(mean_.data() + c);
-      V s{}, p{};
-      for (size_t row = begin; row < end; ++row) {
-        const V value = load<V>(d + row * channels_ + c);
-        s += value;
-        p += value * (load<V>(z + row * channels_ + c) - mean);
-      }
-      add_lanes<T>(sum + c, s);
-      add_lanes<T>(products + c, p);
-    });
-  }
+  if (masked)
+    kernels<T>().add_masked_products(rows, channels_, d, z, mean(), scale(), shift(), sum, products);
+  else
+    kernels<T>().add_products(rows, channels_, d, z, mean(), sum, products);
 }
 
 template <class T>
@@ -102,8 +63,8 @@ void BatchNorm<T>::finish_backward(size_t rows, const T* gamma, T* dgamma, T* db
   for (int c = 0; c < channels_; ++c) {
     const double inverse = inverse_sd_[c], scale = gamma[c] * inverse;
     const double mean_d = sum[c] / rows, slope = products[c] / rows * inverse * inverse;
-    dbeta[c] += T(sum[c]);
-    dgamma[c] += T(products[c] * inverse);
+    dbeta[c] = T(sum[c]);
+    dgamma[c] = T(products[c] * inverse);
     from_d_[c] = T(scale);
     from_z_[c] = T(-scale * slope);
     constant_[c] = T(scale * (slope * mean_[c] - mean_d));
@@ -111,14 +72,9 @@ void BatchNorm<T>::finish_backward(size_t rows, const T* gamma, T* dgamma, T* db
 }
 
 template <class T>
-void BatchNorm<T>::apply_backward(const T* d, const T* z, T* dz, size_t rows) const {
-  for (size_t row = 0; row < rows; ++row)
-    for_lanes<T>(channels_, [&](auto tag, int c) {
-      using V = decltype(tag);
-      const size_t at = row * channels_ + c;
-      store(dz + at, V(load<V>(d + at) * load<V>(from_d_.data() + c) +
-                       (load<V>(z + at) * load<V>(from_z_.data() + c) + load<V>(constant_.data() + c))));
-    });
+void BatchNorm<T>::apply_backward(const T* d, const T* z, T* dz, size_t rows, bool masked) const {
+  kernels<T>().norm_backward(rows, channels_, d, z, from_d_.data(), from_z_.data(), constant_.data(), masked ? scale() : nullptr,
+                             masked ? shift() : nullptr, dz);
 }
 
 template <class T>
@@ -130,47 +86,9 @@ void frozen_norm(int channels, const T* gamma, const T* beta, const T* mean, con
   }
 }
 
-template <class V>
-inline V positive_part(V v) {
-  return v > 0 ? v : V{};
-}
-
-template <class T>
-void norm_relu(const T* z, const T* scale, const T* shift, T* y, size_t rows, int channels) {
-  for (size_t row = 0; row < rows; ++row)
-    for_lanes<T>(channels, [&](auto tag, int c) {
-      using V = decltype(tag);
-      const size_t at = row * channels + c;
-      store(y + at, positive_part(V(load<V>(z + at) * load<V>(scale + c) + load<V>(shift + c))));
-    });
-}
-
-template <class T>
-void norm_add_relu(const T* z, const T* scale, const T* shift, const T* shortcut, const T* shortcut_scale, const T* shortcut_shift,
-                   T* y, size_t rows, int channels) {
-  for (size_t row = 0; row < rows; ++row)
-    for_lanes<T>(channels, [&](auto tag, int c) {
-      using V = decltype(tag);
-      const size_t at = row * channels + c;
-      V other = load<V>(shortcut + at);
-      if (shortcut_scale) other = other * load<V>(shortcut_scale + c) + load<V>(shortcut_shift + c);
-      store(y + at, positive_part(V(load<V>(z + at) * load<V>(scale + c) + load<V>(shift + c) + other)));
-    });
-}
-
-template <class T>
-void relu_mask(T* d, const T* y, size_t count) {
-  for (size_t i = 0; i < count; ++i) d[i] = y[i] > 0 ? d[i] : T(0);
-}
-
-#define SYNPO_INSTANTIATE(T)                                                                                             \
-  template class BatchNorm<T>;                                                                                           \
-  template void frozen_norm(int, const T*, const T*, const T*, const T*, T*, T*);                                        \
-  template void norm_relu(const T*, const T*, const T*, T*, size_t, int);                                                \
-  template void norm_add_relu(const T*, const T*, const T*, const T*, const T*, const T*, T*, size_t, int);              \
-  template void relu_mask(T*, const T*, size_t);
-SYNPO_INSTANTIATE(float)
-SYNPO_INSTANTIATE(double)
-#undef SYNPO_INSTANTIATE
+template class BatchNorm<float>;
+template class BatchNorm<double>;
+template void frozen_norm(int, const float*, const float*, const float*, const float*, float*, float*);
+template void frozen_norm(int, const double*, const double*, const double*, const double*, double*, double*);
 
 }  // namespace synpo

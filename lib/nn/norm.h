@@ -1,5 +1,5 @@
 // Batch normalisation over rows of [rows, channels], in pieces that fuse with what stands beside it: statistics are gathered while
-// a convolution's output is still in the cache; scaling, addition and ReLU are one pass.
+// a convolution's output is still in the cache; scaling, addition and ReLU are one pass (kernel/kernels.h).
 #pragma once
 #include <vector>
 
@@ -40,12 +40,13 @@ class BatchNorm {
   const T* mean() const { return mean_.data(); }
   const T* inverse_sd() const { return inverse_sd_.data(); }
 
-  // Training, backward: every shard adds sum(d) and sum(d * (z - mean)) over its rows ...
+  // Training, backward: every shard adds sum(d) and sum(d * (z - mean)) over its rows; with `masked`, d is the gradient behind a ReLU that
+  // stands right after the normalisation, here as in apply_backward() ...
   void begin_backward(int shards) { sums_.reset(shards, channels_, 2); }
-  void add_backward_rows(int shard, const T* d, const T* z, size_t rows);
-  // ... then dgamma, dbeta += their gradients, and apply_backward gives dz (which may be d itself).
+  void add_backward_rows(int shard, const T* d, const T* z, size_t rows, bool masked);
+  // ... then dgamma, dbeta = their gradients, and apply_backward gives dz (which may be d itself).
   void finish_backward(size_t rows, const T* gamma, T* dgamma, T* dbeta);
-  void apply_backward(const T* d, const T* z, T* dz, size_t rows) const;
+  void apply_backward(const T* d, const T* z, T* dz, size_t rows, bool masked) const;
 
  private:
   int channels_;
@@ -57,16 +58,5 @@ class BatchNorm {
 // Scale and shift of a normalisation by running statistics.
 template <class T>
 void frozen_norm(int channels, const T* gamma, const T* beta, const T* mean, const T* variance, T* scale, T* shift);
-
-// y = relu(z * scale + shift).
-template <class T>
-void norm_relu(const T* z, const T* scale, const T* shift, T* y, size_t rows, int channels);
-// y = relu(z * scale + shift + shortcut), the shortcut itself normalised where its scale is given.
-template <class T>
-void norm_add_relu(const T* z, const T* scale, const T* shift, const T* shortcut, const T* shortcut_scale, const T* shortcut_shift,
-                   T* y, size_t rows, int channels);
-// d = 0 where y is not positive.
-template <class T>
-void relu_mask(T* d, const T* y, size_t count);
 
 }  // namespace synpo

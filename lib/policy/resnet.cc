@@ -126,8 +126,20 @@ void ResNet<T>::normalise_input(Parallel& parallel, int n, const uint8_t* pictur
 
 template <class T>
 void ResNet<T>::prepare_convs(Parallel& parallel, const T* parameters, bool training) {
-  for (Block& block : blocks_)
-    for (size_t i = 0; i < block.convs.size(); ++i) block.convs[i].prepare(parallel, parameters + block.weights[i], training);
+  struct Part {
+    Conv<T>* conv;
+    int product;
+    size_t weight;
+  };
+  std::vector<Part> parts;
+  for (size_t b = blocks_.size(); b-- > 0;)  // the largest first, so that threads end together
+    for (size_t i = 0; i < blocks_[b].convs.size(); ++i)
+      for (int p = 0; p < blocks_[b].convs[i].products(); ++p) parts.push_back({&blocks_[b].convs[i], p, blocks_[b].weights[i]});
+  parallel.run(int(parts.size()), [&](int shard, int) {
+    const Part& part = parts[shard];
+    part.conv->prepare(part.product, parameters + part.weight, training);
+  });
+  scratch_.resize(std::max<size_t>(scratch_.size(), parallel.threads()));
 }
 
 template <class T>
@@ -138,8 +150,8 @@ void ResNet<T>::finish_block(Block& block, Range samples) {
   const BatchNorm<T>& norm = block.norms[1];
   const bool own = block.has_shortcut();
   const T* shortcut = own ? block.z[2].data() : block_input(&block - blocks_.data());
-  norm_add_relu(block.z[1].data() + at, norm.scale(), norm.shift(), shortcut + at, own ? block.norms[2].scale() : nullptr,
-                own ? block.norms[2].shift() : nullptr, block.y.data() + at, rows, conv.out());
+  kernels<T>().norm_add_relu(rows, conv.out(), block.z[1].data() + at, norm.scale(), norm.shift(), shortcut + at,
+                             own ? block.norms[2].scale() : nullptr, own ? block.norms[2].shift() : nullptr, block.y.data() + at);
 }
 
 template <class T>
@@ -151,16 +163,14 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
   for (size_t b = 0; b < blocks_.size(); ++b) {
     Block& block = blocks_[b];
     for (size_t i = 0; i < block.convs.size(); ++i) block.z[i].grow(n * block.convs[i].y_size());
-    block.y1.grow(n * block.convs[0].y_size());
     block.y.grow(n * block.convs[0].y_size());
     const T* x = block_input(b);
     const int unit = block.convs[0].unit(), shards = shard_count(n, unit);
     const int pixels = block.convs[0].side_out() * block.convs[0].side_out();
-    work_.scratch.resize(std::max<size_t>(work_.scratch.size(), parallel.threads()));
     const auto convolve = [&](int i, const T* from, Range range, int shard, int thread) {
       const Conv<T>& conv = block.convs[i];
       T* z = block.z[i].data() + range.begin * conv.y_size();
-      conv.forward(range.size(), from + range.begin * conv.x_size(), z, work_.scratch[thread]);
+      conv.forward(range.size(), from, z, scratch_[thread].products);
       block.norms[i].add_rows(shard, z, size_t(range.size()) * pixels, statistics + block.places[i].mean);
     };
     const auto finish_norm = [&](int i) {
@@ -176,17 +186,18 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
                input_.data() + range.begin * kInputSize);
       else
         finish_block(blocks_[b - 1], range);
-      convolve(0, x, range, shard, thread);
-      if (block.has_shortcut()) convolve(2, x, range, shard, thread);
+      convolve(0, x + range.begin * block.convs[0].x_size(), range, shard, thread);
+      if (block.has_shortcut()) convolve(2, x + range.begin * block.convs[2].x_size(), range, shard, thread);
     });
     finish_norm(0);
     if (block.has_shortcut()) finish_norm(2);
     parallel.run(shards, [&](int shard, int thread) {
       const Range range = shard_range(n, unit, shard);
-      const size_t at = range.begin * block.convs[0].y_size();
-      norm_relu(block.z[0].data() + at, block.norms[0].scale(), block.norms[0].shift(), block.y1.data() + at,
-                size_t(range.size()) * pixels, block.convs[0].out());
-      convolve(1, block.y1.data(), range, shard, thread);
+      const size_t size = block.convs[0].y_size();
+      T* y1 = scratch_[thread].picture.grow(range.size() * size);
+      kernels<T>().norm_relu(size_t(range.size()) * pixels, block.convs[0].out(), block.z[0].data() + range.begin * size,
+                             block.norms[0].scale(), block.norms[0].shift(), y1);
+      convolve(1, y1, range, shard, thread);
     });
     finish_norm(1);
   }
@@ -194,54 +205,137 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
   dense_forward(parallel, n, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_, parameters + fc_bias_, false, psi);
 }
 
+// `d`, the gradient of the block's output, is masked by its ReLU and summed for the normalisations before it.
+template <class T>
+void ResNet<T>::add_block_sums(Block& block, int shard, Range samples, T* d) {
+  const Conv<T>& conv = block.convs[1];
+  const size_t at = samples.begin * conv.y_size(), count = samples.size() * conv.y_size();
+  kernels<T>().relu_mask(count, d + at, block.y.data() + at);
+  for (const int i : {1, 2})
+    if (i == 1 || block.has_shortcut())
+      block.norms[i].add_backward_rows(shard, d + at, block.z[i].data() + at, count / conv.out(), false);
+}
+
+template <class T>
+void ResNet<T>::finish_norm_backward(Block& block, int i, const T* parameters, T* gradient) {
+  const Conv<T>& conv = block.convs[i];
+  block.norms[i].finish_backward(n_ * conv.y_size() / conv.out(), parameters + block.places[i].scale, gradient + block.places[i].scale,
+                                 gradient + block.places[i].shift);
+}
+
+template <class T>
+void ResNet<T>::weight_gradients(Parallel& parallel, Block& block, std::initializer_list<int> convs, Range samples, T* gradient) {
+  std::vector<std::pair<int, int>> shards;
+  for (const int i : convs)
+    for (int shard = 0; shard < block.convs[i].gradient_shards(); ++shard) shards.emplace_back(i, shard);
+  parallel.run(int(shards.size()), [&](int number, int) {
+    const auto [i, shard] = shards[number];
+    const Conv<T>& conv = block.convs[i];
+    T* to = conv.transformed() ? block.dfactors[i].data() : gradient + block.weights[i];
+    conv.weight_gradient(shard, slabs_[i], samples.size(), samples.begin > 0, to);
+  });
+}
+
+// From d_ through the second convolution: dy1_, and what the first normalisation needs.
+template <class T>
+void ResNet<T>::backward_inner(Parallel& parallel, Block& block, const T* parameters, T* gradient) {
+  const Conv<T>& conv = block.convs[1];
+  const size_t size = conv.y_size(), rows = size / conv.out();
+  const int unit = conv.unit();
+  block.norms[0].begin_backward(shard_count(n_, unit));
+  conv.reserve(slabs_[1], Conv<T>::kSlab);
+  for (int begin = 0; begin < n_; begin += Conv<T>::kSlab) {
+    const Range slab = {begin, std::min(n_, begin + Conv<T>::kSlab)};
+    parallel.run(shard_count(slab.size(), unit), [&](int shard, int thread) {
+      const Range part = shard_range(slab.size(), unit, shard);
+      const size_t at = (begin + part.begin) * size, count = part.size() * rows;
+      Scratch& scratch = scratch_[thread];
+      const T* z = block.z[0].data() + at;
+      T* dy1 = dy1_.data() + at;
+      T* dz = scratch.picture.grow(part.size() * size);
+      T* y1 = scratch.second.grow(part.size() * size);
+      block.norms[1].apply_backward(d_.data() + at, block.z[1].data() + at, dz, count, false);
+      kernels<T>().norm_relu(count, conv.out(), z, block.norms[0].scale(), block.norms[0].shift(), y1);
+      conv.backward(slabs_[1], part, y1, dz, dy1, false, scratch.products);
+      block.norms[0].add_backward_rows(begin / unit + shard, dy1, z, count, true);
+    });
+    weight_gradients(parallel, block, {1}, slab, gradient);
+  }
+  finish_norm_backward(block, 0, parameters, gradient);
+}
+
+// From dy1_ and d_ through the first convolution and the shortcut: d_ becomes the gradient of the block before, masked and summed.
+template <class T>
+void ResNet<T>::backward_outer(Parallel& parallel, size_t b, T* gradient) {
+  Block& block = blocks_[b];
+  const Conv<T>& conv = block.convs[0];
+  const bool own = block.has_shortcut();
+  const size_t size = conv.y_size(), rows = size / conv.out();
+  const int unit = conv.unit();
+  for (const int i : {0, 2})
+    if (i == 0 || own) block.convs[i].reserve(slabs_[i], Conv<T>::kSlab);
+  if (b > 0)
+    for (BatchNorm<T>& norm : blocks_[b - 1].norms) norm.begin_backward(shard_count(n_, unit));
+  T* dx = b == 0 ? nullptr : own ? dx_.data() : d_.data();
+  for (int begin = 0; begin < n_; begin += Conv<T>::kSlab) {
+    const Range slab = {begin, std::min(n_, begin + Conv<T>::kSlab)};
+    parallel.run(shard_count(slab.size(), unit), [&](int shard, int thread) {
+      const Range part = shard_range(slab.size(), unit, shard), samples = {begin + part.begin, begin + part.end};
+      const size_t at = samples.begin * size, count = part.size() * rows;
+      Scratch& scratch = scratch_[thread];
+      const T* x = block_input(b) + samples.begin * conv.x_size();
+      T* dx_part = dx ? dx + samples.begin * conv.x_size() : nullptr;
+      T* dz = scratch.picture.grow(part.size() * size);
+      block.norms[0].apply_backward(dy1_.data() + at, block.z[0].data() + at, dz, count, true);
+      conv.backward(slabs_[0], part, x, dz, dx_part, !own, scratch.products);
+      if (own) {
+        block.norms[2].apply_backward(d_.data() + at, block.z[2].data() + at, dz, count, false);
+        block.convs[2].backward(slabs_[2], part, x, dz, dx_part, true, scratch.products);
+      }
+      if (b > 0) add_block_sums(blocks_[b - 1], begin / unit + shard, samples, dx);
+    });
+    if (own)
+      weight_gradients(parallel, block, {0, 2}, slab, gradient);
+    else
+      weight_gradients(parallel, block, {0}, slab, gradient);
+  }
+  if (own) std::swap(d_, dx_);
+}
+
 template <class T>
 void ResNet<T>::backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient) {
-  const int n = n_;
-  T* d = d_.grow(n * largest_);
-  T* dz = dz_.grow(n * largest_);
-  T* dy1 = dy1_.grow(n * largest_);
-  T* dshortcut = dshortcut_.grow(n * largest_);
-  dense_backward<T>(parallel, n, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_, nullptr, dpsi, d, false,
+  for (Buffer<T>* buffer : {&d_, &dx_, &dy1_}) buffer->grow(n_ * largest_);
+  for (Block& block : blocks_)
+    for (size_t i = 0; i < block.convs.size(); ++i)
+      if (block.convs[i].transformed()) block.dfactors[i].grow(block.convs[i].dfactors_size());
+  std::fill_n(gradient + fc_weight_, flat_ * feature_, T(0));
+  std::fill_n(gradient + fc_bias_, feature_, T(0));
+  dense_backward<T>(parallel, n_, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_, nullptr, dpsi, d_.data(), false,
                     gradient + fc_weight_, gradient + fc_bias_);
+  for (BatchNorm<T>& norm : blocks_.back().norms) norm.begin_backward(shard_count(n_, kUnit));
+  parallel.run(shard_count(n_, kUnit), [&](int shard, int) { add_block_sums(blocks_.back(), shard, shard_range(n_, kUnit, shard), d_.data()); });
   for (size_t b = blocks_.size(); b-- > 0;) {
     Block& block = blocks_[b];
-    const size_t size = block.convs[0].y_size();
-    const int pixels = block.convs[0].side_out() * block.convs[0].side_out();
-    const int shards = shard_count(n, kUnit);
-    // Backward through a ReLU (whose output is y) and the normalisations behind it: `from` is masked, then each norm's dz is made.
-    const auto through_norms = [&](T* from, const T* y, std::initializer_list<std::pair<int, T*>> norms) {
-      for (const auto& [i, to] : norms) block.norms[i].begin_backward(shards);
-      parallel.run(shards, [&](int shard, int) {
-        const Range range = shard_range(n, kUnit, shard);
-        const size_t at = range.begin * size;
-        relu_mask(from + at, y + at, range.size() * size);
-        for (const auto& [i, to] : norms)
-          block.norms[i].add_backward_rows(shard, from + at, block.z[i].data() + at, size_t(range.size()) * pixels);
-      });
-      for (const auto& [i, to] : norms)
-        block.norms[i].finish_backward(size_t(n) * pixels, parameters + block.places[i].scale, gradient + block.places[i].scale,
-                                       gradient + block.places[i].shift);
-      parallel.run(shards, [&](int shard, int) {
-        const Range range = shard_range(n, kUnit, shard);
-        const size_t at = range.begin * size;
-        for (const auto& [i, to] : norms)
-          block.norms[i].apply_backward(from + at, block.z[i].data() + at, to + at, size_t(range.size()) * pixels);
-      });
-    };
-    const auto through_conv = [&](int i, const T* x, const T* from, T* dx, bool add) {
-      block.convs[i].backward(parallel, n, x, from, dx, add, gradient + block.weights[i], work_);
-    };
-    if (block.has_shortcut())
-      through_norms(d, block.y.data(), {{1, dz}, {2, dshortcut}});
-    else
-      through_norms(d, block.y.data(), {{1, dz}});
-    through_conv(1, block.y1.data(), dz, dy1, false);
-    through_norms(dy1, block.y1.data(), {{0, dy1}});
-    // From here on d is the gradient of the block's input: an identity shortcut leaves it in place, to be added to.
-    T* dx = b == 0 ? nullptr : d;
-    through_conv(0, block_input(b), dy1, dx, !block.has_shortcut());
-    if (block.has_shortcut()) through_conv(2, block_input(b), dshortcut, dx, true);
+    finish_norm_backward(block, 1, parameters, gradient);
+    if (block.has_shortcut()) finish_norm_backward(block, 2, parameters, gradient);
+    backward_inner(parallel, block, parameters, gradient);
+    backward_outer(parallel, b, gradient);
   }
+  struct Part {
+    const Conv<T>* conv;
+    int tap;
+    const T* dfactors;
+    T* dweight;
+  };
+  std::vector<Part> parts;
+  for (size_t b = blocks_.size(); b-- > 0;)
+    for (size_t i = 0; i < blocks_[b].convs.size(); ++i)
+      for (int tap = 0; blocks_[b].convs[i].transformed() && tap < Conv<T>::kTaps; ++tap)
+        parts.push_back({&blocks_[b].convs[i], tap, blocks_[b].dfactors[i].data(), gradient + blocks_[b].weights[i]});
+  parallel.run(int(parts.size()), [&](int shard, int) {
+    const Part& part = parts[shard];
+    part.conv->finish_gradient(part.tap, part.dfactors, part.dweight);
+  });
 }
 
 template <class T>
@@ -260,17 +354,15 @@ void ResNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const
       input_shift_[c] = statistics[input_mean_ + c];
       input_scale_[c] = T(1 / std::sqrt(statistics[input_variance_ + c] + kNormEpsilon));
     }
-  fc_.assign(parameters + fc_weight_, parameters + fc_weight_ + flat_ * feature_);
-  fc_.insert(fc_.end(), parameters + fc_bias_, parameters + fc_bias_ + feature_);
-  // One scratch a thread for products, one for pictures.
-  work_.scratch.resize(std::max<size_t>(work_.scratch.size(), 2 * parallel.threads()));
+  fc_packed_.pack(Op::kAsIs, int(flat_), feature_, parameters + fc_weight_, feature_);
+  fc_bias_values_.assign(parameters + fc_bias_, parameters + fc_bias_ + feature_);
 }
 
 template <class T>
 void ResNet<T>::infer(int thread, int n, const uint8_t* pictures, T* psi) {
-  Buffer<T>& products = work_.scratch[2 * thread];
+  Buffer<T>& products = scratch_[thread].products;
   const size_t place = n * std::max(kInputSize, largest_);
-  T* x = work_.scratch[2 * thread + 1].grow(5 * place);
+  T* x = scratch_[thread].picture.grow(5 * place);
   T* next = x + place;
   T* spare[3] = {x + 2 * place, x + 3 * place, x + 4 * place};
   expand(n, pictures, input_shift_.data(), input_scale_.data(), x);
@@ -280,17 +372,16 @@ void ResNet<T>::infer(int thread, int n, const uint8_t* pictures, T* psi) {
     const auto scale = [&](int i) { return block.frozen[i].data(); };
     const auto shift = [&](int i) { return block.frozen[i].data() + out; };
     block.convs[0].forward(n, x, spare[0], products);
-    norm_relu(spare[0], scale(0), shift(0), spare[0], rows, out);
+    kernels<T>().norm_relu(rows, out, spare[0], scale(0), shift(0), spare[0]);
     block.convs[1].forward(n, spare[0], spare[1], products);
     const bool own = block.has_shortcut();
     if (own) block.convs[2].forward(n, x, spare[2], products);
-    norm_add_relu(spare[1], scale(1), shift(1), own ? spare[2] : x, own ? scale(2) : nullptr, own ? shift(2) : nullptr, next, rows, out);
+    kernels<T>().norm_add_relu(rows, out, spare[1], scale(1), shift(1), own ? spare[2] : x, own ? scale(2) : nullptr, own ? shift(2) : nullptr,
+                               next);
     std::swap(x, next);
   }
-  gemm(Op::kAsIs, Op::kAsIs, n, feature_, int(flat_), x, int(flat_), fc_.data(), feature_, psi, feature_);
-  const T* bias = fc_.data() + flat_ * feature_;
-  for (int i = 0; i < n; ++i)
-    for (int c = 0; c < feature_; ++c) psi[size_t(i) * feature_ + c] += bias[c];
+  gemm(Op::kAsIs, n, x, int(flat_), fc_packed_, psi, feature_);
+  kernels<T>().add_bias(n, feature_, fc_bias_values_.data(), false, psi);
 }
 
 template <class T>

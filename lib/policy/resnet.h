@@ -25,7 +25,7 @@ class ResNet {
 
   // psi [n, feature] from pictures [n, 16, 16, history] of colour indices. Keeps what backward() needs; memory grows with n.
   void forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi);
-  // gradient += ...; dpsi is the gradient of the last forward()'s psi.
+  // Writes the gradients of the encoder's parameters; dpsi is the gradient of the last forward()'s psi.
   void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient);
 
   void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics);
@@ -45,13 +45,19 @@ class ResNet {
     NormPlace places[3];
     BatchNorm<T> norms[3];
     std::vector<T> frozen[3];  // scale, then shift, for inference
-    Buffer<T> z[3], y1, y;     // outputs of the convolutions; after the inner and the last ReLU
+    Buffer<T> z[3], y;         // outputs of the convolutions; after the last ReLU. What is after the inner one is made anew where needed
+    Buffer<T> dfactors[3];     // gradients of transformed weights
     bool has_shortcut() const { return convs.size() == 3; }
   };
   void expand(int n, const uint8_t* pictures, const T* mean, const T* inverse_sd, T* x) const;
   void normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics);
   void prepare_convs(Parallel& parallel, const T* parameters, bool training);
   void finish_block(Block& block, Range samples);
+  void backward_inner(Parallel& parallel, Block& block, const T* parameters, T* gradient);
+  void backward_outer(Parallel& parallel, size_t b, T* gradient);
+  void weight_gradients(Parallel& parallel, Block& block, std::initializer_list<int> convs, Range samples, T* gradient);
+  void add_block_sums(Block& block, int shard, Range samples, T* d);
+  void finish_norm_backward(Block& block, int i, const T* parameters, T* gradient);
   const T* block_input(size_t b) const { return b == 0 ? input_.data() : blocks_[b - 1].y.data(); }
 
   int feature_;
@@ -61,10 +67,15 @@ class ResNet {
   size_t flat_ = 0;       // inputs of the dense layer
   size_t largest_ = 0;    // values of the largest picture behind the first convolution
   int n_ = 0;
-  Buffer<T> input_, d_, dz_, dy1_, dshortcut_;
+  Buffer<T> input_, d_, dx_, dy1_;  // gradients of a block's output, of its input where that has another shape, and behind its inner ReLU
   std::vector<T> input_shift_, input_scale_;  // per channel of the input
-  typename Conv<T>::Workspace work_;
-  std::vector<T> fc_;     // inference: weight, then bias
+  typename Conv<T>::Slab slabs_[3];  // of a block's convolutions
+  struct Scratch {
+    Buffer<T> products, picture, second;
+  };
+  std::vector<Scratch> scratch_;  // a thread's own
+  Packed<T> fc_packed_;            // for inference
+  std::vector<T> fc_bias_values_;
 };
 
 extern template class ResNet<float>;

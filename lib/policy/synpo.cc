@@ -6,7 +6,6 @@
 #include "base/random.h"
 #include "nn/dense.h"
 #include "nn/gemm.h"
-#include "nn/lanes.h"
 #include "nn/loss.h"
 
 namespace synpo {
@@ -209,7 +208,7 @@ Losses SynPo<T>::pairs_forward_backward(Parallel& parallel, const StepBatch<T>& 
       const T* psi = psi_.data() + size_t(i) * d;
       T* dpsi = dpsi_.data() + size_t(i) * d;
       T* score = logits + size_t(i) * actions;
-      for (int a = 0; a < actions; ++a) score[a] = dot(d, psi, u + a * d) + parameters[policy_bias_ + a];
+      for (int a = 0; a < actions; ++a) score[a] = kernels<T>().dot(d, psi, u + a * d) + parameters[policy_bias_ + a];
       policy_loss[p] += cross_entropy(score, actions, batch.label[i], inverse, dlogits.data());
       std::fill_n(dpsi, d, T(0));
       for (int a = 0; a < actions; ++a) {
@@ -220,7 +219,7 @@ Losses SynPo<T>::pairs_forward_backward(Parallel& parallel, const StepBatch<T>& 
         }
       }
       const int a = batch.taken[i];
-      const T error = dot(d, psi, v + a * d) + parameters[reward_bias_ + a] - batch.reward[i];
+      const T error = kernels<T>().dot(d, psi, v + a * d) + parameters[reward_bias_ + a] - batch.reward[i];
       reward_loss[p] += double(error) * error;
       const T derror = T(weights.reward) * 2 * error * inverse;
       dbias_reward[a] += derror;
@@ -321,7 +320,7 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
 template <class T>
 Losses SynPo<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
                       T* gradient, T* logits) {
-  std::fill_n(gradient, this->parameters_.total(), T(0));
+  std::fill(gradient + env_, gradient + this->parameters_.total(), T(0));  // the encoder overwrites its own
   psi_.grow(size_t(batch.size) * shape_.feature);
   dpsi_.grow(size_t(batch.size) * shape_.feature);
   denv_.assign(size_t(shape_.envs) * shape_.embedding, T(0));
@@ -354,7 +353,7 @@ void SynPo<T>::infer(int thread, int size, const uint8_t* pictures, const int* p
   for (int i = 0; i < size; ++i)
     for (int a = 0; a < actions; ++a)
       logits[size_t(i) * actions + a] =
-          dot(d, psi.data() + size_t(i) * d, composed_[0].data() + (size_t(pair[i]) * actions + a) * d) + inference_bias_[a];
+          kernels<T>().dot(d, psi.data() + size_t(i) * d, composed_[0].data() + (size_t(pair[i]) * actions + a) * d) + inference_bias_[a];
 }
 
 template class SynPo<float>;

@@ -99,30 +99,30 @@ gtest() { # RESULT...: a program that writes such results as gtest does
 
 @test "check: counts over all runners, in its last line" {
     check "$(gtest COMPLETED COMPLETED)" 'TEST "a" { true; }'
-    [ "$status $last" = "0 4 passed, 0 failed" ] || complain "$(cat out)"
+    [ "$status $last" = "0 5 passed, 0 failed" ] || complain "$(cat out)"
     check "$(gtest COMPLETED SKIPPED)" 'TEST "a" { skip; }
 TEST "b" { true; }'
-    [ "$status $last" = "0 3 passed, 0 failed, 2 skipped" ] || complain "$(cat out)"
+    [ "$status $last" = "0 4 passed, 0 failed, 2 skipped" ] || complain "$(cat out)"
 }
 
 @test "check: a failure anywhere is counted, printed, and the other runners still run" {
     check "$(gtest COMPLETED FAILED)" 'TEST "a" { true; }'
-    [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
+    [ "$status $last" = "1 4 passed, 1 failed" ] || complain "$(cat out)"
     check "$(gtest FAILED)" 'TEST "a" { echo the reason; false; }'
-    [ "$status $last" = "1 1 passed, 2 failed" ] || complain "$(cat out)"
+    [ "$status $last" = "1 2 passed, 2 failed" ] || complain "$(cat out)"
     grep -q "the reason" out
 }
 
 @test "check: a runner that dies, or runs nothing, is a failure" {
     check 'kill -SEGV $$' 'TEST "a" { true; }'
-    [ "$status $last" = "1 2 passed, 1 failed" ] || complain "$(cat out)"
+    [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
     check "$(gtest)" 'TEST "a" { true; }'
-    [ "$status $last" = "1 2 passed, 1 failed" ] || complain "$(cat out)"
+    [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
     check "$(gtest COMPLETED)
 exit 3" '# no test'
-    [ "$status $last" = "1 2 passed, 1 failed" ] || complain "$(cat out)"
-    check "$(gtest COMPLETED | sed 's/exit 0/exit 3/')" 'TEST "a" { true; }'
     [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
+    check "$(gtest COMPLETED | sed 's/exit 0/exit 3/')" 'TEST "a" { true; }'
+    [ "$status $last" = "1 4 passed, 1 failed" ] || complain "$(cat out)"
     check "$(gtest COMPLETED)" 'TEST "a" { true'
     [ "$status" -eq 1 ] || complain "$(cat out)"
     run -64 "$ROOT/scripts/check" no-such-build
@@ -146,4 +146,14 @@ exit 3" '# no test'
     PATH=$PWD/bin "$ROOT/scripts/deps" bash no-such-package >out 2>&1
     grep -qx 'sudo env DEBIAN_FRONTEND=noninteractive apt-get -q update' out
     grep -qx 'sudo env DEBIAN_FRONTEND=noninteractive apt-get -q -y --no-install-recommends install no-such-package' out
+}
+
+@test "check: a kernel that exports what others could use is a failure" {
+    mkdir -p build/lib/kernel
+    echo 'namespace synpo::avx2 { int mine() { return 1; } } int shared() { return 2; }' |
+        g++ -std=c++17 -x c++ -c -o build/lib/kernel/target_avx2.o -
+    check "$(gtest COMPLETED)" 'TEST "a" { true; }'
+    [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
+    grep -q 'shared()' out
+    run ! grep -q 'mine()' out
 }

@@ -70,15 +70,15 @@ TEST(BatchNorm, BackwardIsFiniteDifferences) {
     run.norm.begin_backward(NormRun::kShards);
     for (int shard = 0; shard < NormRun::kShards; ++shard) {
       const size_t at = run.begin(shard) * channels;
-      run.norm.add_backward_rows(shard, d.data() + at, run.z.data() + at, run.begin(shard + 1) - run.begin(shard));
+      run.norm.add_backward_rows(shard, d.data() + at, run.z.data() + at, run.begin(shard + 1) - run.begin(shard), false);
     }
-    std::vector<double> dgamma(channels, 0.5), dbeta(channels, 0.25), dz = d;
+    std::vector<double> dgamma(channels, kNan), dbeta(channels, kNan), dz = d;
     run.norm.finish_backward(run.rows, run.gamma.data(), dgamma.data(), dbeta.data());
-    run.norm.apply_backward(dz.data(), run.z.data(), dz.data(), run.rows);
+    run.norm.apply_backward(dz.data(), run.z.data(), dz.data(), run.rows, false);
     for (size_t i = 0; i < run.size; i += 7) ASSERT_NEAR(dz[i], central_difference(run.z[i], 1e-5, loss), 1e-7);
     for (int c = 0; c < channels; ++c) {
-      ASSERT_NEAR(dgamma[c], central_difference(run.gamma[c], 1e-3, loss) + 0.5, 1e-8);
-      ASSERT_NEAR(dbeta[c], central_difference(run.beta[c], 1e-3, loss) + 0.25, 1e-8);
+      ASSERT_NEAR(dgamma[c], central_difference(run.gamma[c], 1e-3, loss), 1e-8);
+      ASSERT_NEAR(dbeta[c], central_difference(run.beta[c], 1e-3, loss), 1e-8);
     }
   }
 }
@@ -98,28 +98,33 @@ TEST(BatchNorm, SquaresDoNotCancel) {
   EXPECT_NEAR(norm.inverse_sd()[0], 1 / std::sqrt((16 * 16 - 1) / 12.0 / 256 + 1e-5), 1e-4);
 }
 
-TEST(Norm, FrozenAndFusedPasses) {
-  constexpr int kRows = 7, kChannels = 21;
-  const std::vector<double> z = random_values<double>(kRows * kChannels, 1), shortcut = random_values<double>(kRows * kChannels, 2),
-                            gamma = random_values<double>(kChannels, 3), beta = random_values<double>(kChannels, 4),
-                            mean = random_values<double>(kChannels, 5);
+TEST(BatchNorm, BackwardThroughTheReLUBehindIt) {
+  // masked: as if d had been set to zero where the normalised value is not positive.
+  NormRun run(100, 19);
+  const std::vector<double> y = run.forward(), d = random_values<double>(run.size, 9);
+  std::vector<double> zeroed = d, dz[2] = {std::vector<double>(run.size), std::vector<double>(run.size)};
+  for (size_t i = 0; i < run.size; ++i)
+    if (y[i] <= 0) zeroed[i] = 0;
+  for (const bool masked : {false, true}) {
+    const std::vector<double>& from = masked ? d : zeroed;
+    std::vector<double> dgamma(run.channels), dbeta(run.channels);
+    run.norm.begin_backward(1);
+    run.norm.add_backward_rows(0, from.data(), run.z.data(), run.rows, masked);
+    run.norm.finish_backward(run.rows, run.gamma.data(), dgamma.data(), dbeta.data());
+    run.norm.apply_backward(from.data(), run.z.data(), dz[masked].data(), run.rows, masked);
+  }
+  EXPECT_EQ(dz[0], dz[1]);
+}
+
+TEST(Norm, Frozen) {
+  constexpr int kChannels = 21;
+  const std::vector<double> gamma = random_values<double>(kChannels, 3), beta = random_values<double>(kChannels, 4),
+                            mean = random_values<double>(kChannels, 5), z = random_values<double>(kChannels, 7);
   std::vector<double> variance = random_values<double>(kChannels, 6), scale(kChannels), shift(kChannels);
   for (double& v : variance) v = std::abs(v);
   frozen_norm(kChannels, gamma.data(), beta.data(), mean.data(), variance.data(), scale.data(), shift.data());
-  std::vector<double> y(z.size()), plain(z.size()), normed(z.size());
-  norm_relu(z.data(), scale.data(), shift.data(), y.data(), kRows, kChannels);
-  norm_add_relu<double>(z.data(), scale.data(), shift.data(), shortcut.data(), nullptr, nullptr, plain.data(), kRows, kChannels);
-  norm_add_relu(z.data(), scale.data(), shift.data(), shortcut.data(), shift.data(), scale.data(), normed.data(), kRows, kChannels);
-  for (size_t i = 0; i < z.size(); ++i) {
-    const int c = int(i % kChannels);
-    const double value = (z[i] - mean[c]) / std::sqrt(variance[c] + 1e-5) * gamma[c] + beta[c];
-    ASSERT_NEAR(y[i], std::max(0.0, value), 1e-13);
-    ASSERT_NEAR(plain[i], std::max(0.0, value + shortcut[i]), 1e-13);
-    ASSERT_NEAR(normed[i], std::max(0.0, value + shortcut[i] * shift[c] + scale[c]), 1e-13);
-  }
-  std::vector<double> d(z.size(), 3);
-  relu_mask(d.data(), y.data(), d.size());
-  for (size_t i = 0; i < d.size(); ++i) ASSERT_EQ(d[i], y[i] > 0 ? 3 : 0);
+  for (int c = 0; c < kChannels; ++c)
+    ASSERT_NEAR(z[c] * scale[c] + shift[c], (z[c] - mean[c]) / std::sqrt(variance[c] + 1e-5) * gamma[c] + beta[c], 1e-13);
 }
 
 struct DenseRun {

@@ -8,6 +8,7 @@
 #include "format/safetensors.h"
 #include "nn/adam.h"
 #include "numbers.h"
+#include "targets.h"
 #include "policy/synpo.h"
 #include "temporary.h"
 #include "world/view.h"
@@ -227,18 +228,23 @@ Worst compare_with_dump(const std::string& path) {
   const std::vector<float> reward = dump.get<float>("reward");
   const StepBatch<float> batch = {int(env.size()), pictures.data(), env.data(), task.data(), label.data(), taken.data(), reward.data()};
   const auto number = [&](const char* name) { return std::atof(dump.meta(name).c_str()); };
+  // No input of a ReLU in the file is so near zero that a float's rounding changes its sign. Coarser products do change some, and gradients with
+  // them: of those, only what stands before the gradients is compared.
+  const bool coarse = kernels<float>().product_error > 0x1p-24;
+  const double limit = coarse ? 10 * kernels<float>().product_error : 1e-4;
   const auto compare = [&](const std::string& kind, const std::string& name, const float* got) {
     const std::vector<float> want = dump.get<float>(name);
-    worst.add(kind, name, relative_error(got, want.data(), want.size()));
+    worst.add(kind, name, relative_error(got, want.data(), want.size()), limit);
   };
 
   Parallel parallel(1);
   const Losses losses = net.step(parallel, batch, {number("weight_reward"), number("weight_env"), number("weight_task")});
   const double got[5] = {losses.total, losses.policy, losses.reward, losses.env, losses.task};
   const std::vector<double> want = dump.get<double>("loss");
-  for (int i = 0; i < 5; ++i) worst.add("loss", "number " + std::to_string(i), relative_error(got + i, want.data() + i, 1));
+  for (int i = 0; i < 5; ++i) worst.add("loss", "number " + std::to_string(i), relative_error(got + i, want.data() + i, 1), limit);
   compare("logits", "logits", net.logits.data());
   compare("psi", "psi", net.policy.last_feature());
+  if (coarse) return worst;
   for (const TensorInfo& tensor : layout.tensors()) compare("gradient", "grad." + tensor.name, net.gradient.data() + tensor.offset);
   for (const TensorInfo& tensor : net.policy.statistics().tensors()) compare("statistics", "after." + tensor.name, net.statistics.data() + tensor.offset);
   const std::vector<float> scores = net.infer(parallel, batch, SynPo<float>::kInferenceUnit);
@@ -269,13 +275,15 @@ Worst compare_with_dump(const std::string& path) {
 
 // SYNPO_TORCH_DUMP names another dump to compare with, for instance one at full width.
 TEST(SynPo, AgreesWithPyTorch) {
-  const Worst narrow = compare_with_dump("tests/data/torch_narrow.safetensors");
   const char* path = std::getenv("SYNPO_TORCH_DUMP");
-  if (!path) return;
-  std::printf("narrow\n");
-  narrow.print();
-  std::printf("%s\n", path);
-  compare_with_dump(path).print();
+  for_every_target([&](const std::string& target) {
+    const Worst narrow = compare_with_dump("tests/data/torch_narrow.safetensors");
+    if (!path) return;
+    std::printf("%s, narrow\n", target.c_str());
+    narrow.print();
+    std::printf("%s, %s\n", target.c_str(), path);
+    compare_with_dump(path).print();
+  });
 }
 
 TEST(SynPo, OneAndTwoThreadsGiveTheSameBits) {

@@ -1,8 +1,9 @@
-// Loops over channels in vectors as wide as the target's registers, in plain C++.
+// Loops over channels in vectors as wide as the target's registers, in plain C++. Part of target.cc.
 #pragma once
 #include <cstring>
+#include <type_traits>
 
-namespace synpo {
+namespace synpo::SYNPO_TARGET {
 
 #if defined(__AVX512F__)
 constexpr int kVectorBytes = 64;
@@ -16,6 +17,19 @@ template <class T>
 struct Lanes {
   typedef T Vec __attribute__((vector_size(kVectorBytes)));
   static constexpr int kCount = kVectorBytes / sizeof(T);
+};
+
+template <class V>
+struct ElementOf {
+  using Type = std::remove_cvref_t<decltype(V{}[0])>;
+};
+template <>
+struct ElementOf<float> {
+  using Type = float;
+};
+template <>
+struct ElementOf<double> {
+  using Type = double;
 };
 
 // Unaligned load and store of a Vec or a scalar.
@@ -40,20 +54,4 @@ inline void for_lanes(int count, Body&& body) {
   for (; c < count; ++c) body(T{}, c);
 }
 
-// Sum of a[i] * b[i]; the order of the additions depends on n alone.
-template <class T>
-inline T dot(int n, const T* a, const T* b) {
-  typename Lanes<T>::Vec sums{};
-  T sum = 0;
-  for_lanes<T>(n, [&](auto tag, int c) {
-    using V = decltype(tag);
-    if constexpr (sizeof(V) > sizeof(T))
-      sums += load<V>(a + c) * load<V>(b + c);
-    else
-      sum += a[c] * b[c];
-  });
-  for (int i = 0; i < Lanes<T>::kCount; ++i) sum += sums[i];
-  return sum;
-}
-
-}  // namespace synpo
+}  // namespace synpo::SYNPO_TARGET

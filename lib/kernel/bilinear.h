@@ -12,8 +12,6 @@
 // Toeplitz2: two pixels with zeros on both sides, y0 = w1 x0 + w2 x1, y1 = w0 x0 + w1 x1. The matrix has equal diagonals, hence
 //     y0 = w1 (x0 + x1) + (w2 - w1) x1,   y1 = w1 (x0 + x1) + (w0 - w1) x0:    3 products, where the direct form takes 6.
 #pragma once
-#include <type_traits>
-#include <utility>
 
 namespace synpo {
 
@@ -54,47 +52,5 @@ struct Toeplitz2 {
   static constexpr SmallMatrix<3, 3> kWeight = {{{0, 1, 0}, {0, -1, 1}, {1, -1, 0}}};
   static constexpr SmallMatrix<2, 3> kOutput = {{{1, 1, 0}, {1, 0, 1}}};
 };
-
-// One row of a small constant matrix times a vector of values `stride` apart. Zeros and ones cost nothing.
-template <const auto& M, int R, int C = 0, bool kFirst = true, class V>
-inline V row_times(const V* in, int stride, V sum = V{}) {
-  using Scalar = decltype(V{} + V{});
-  if constexpr (C == std::remove_reference_t<decltype(M)>::kColumns) {
-    return sum;
-  } else {
-    constexpr double factor = M.at[R][C];
-    if constexpr (factor == 0) {
-      return row_times<M, R, C + 1, kFirst>(in, stride, sum);
-    } else {
-      Scalar term = in[C * stride];
-      if constexpr (factor == -1) {
-        term = -term;
-      } else if constexpr (factor != 1) {
-        using Element = std::remove_cvref_t<decltype([](const V& v) {
-          if constexpr (requires { v[0]; })
-            return v[0];
-          else
-            return v;
-        }(term))>;
-        term = term * Element(factor);
-      }
-      if constexpr (kFirst)
-        return row_times<M, R, C + 1, false>(in, stride, term);
-      else
-        return row_times<M, R, C + 1, false>(in, stride, V(sum + term));
-    }
-  }
-}
-
-// out [R, R] = M in M^T for in [C, C], both row by row.
-template <const auto& M, class V>
-inline void transform_2d(const V* in, V* out) {
-  constexpr int R = std::remove_reference_t<decltype(M)>::kRows, C = std::remove_reference_t<decltype(M)>::kColumns;
-  V half[R * C];
-  [&]<int... r>(std::integer_sequence<int, r...>) {
-    for (int c = 0; c < C; ++c) ((half[r * C + c] = row_times<M, r>(in + c, C)), ...);
-    for (int i = 0; i < R; ++i) ((out[i * R + r] = row_times<M, r>(half + i * C, 1)), ...);
-  }(std::make_integer_sequence<int, R>{});
-}
 
 }  // namespace synpo

@@ -1,0 +1,212 @@
+// The matrix product of floats in AMX tiles. Part of target.cc.
+//
+// A tile instruction multiplies bf16 (8 significant bits, rounded to within 2^-8) and adds up in float. Every factor is split into two,
+// x = hi + lo, hi the nearest bf16 of x and lo the nearest bf16 of x - hi, which leaves an error of at most 2^-16 |x|. Of the four products
+// three are taken:
+//     a b ~ a_hi b_hi + a_hi b_lo + a_lo b_hi,
+// what is left out is at most 2^-16 |a b|. A product's relative error is thus below 2^-14 (three errors of 2^-16, and what they make of one
+// another), a twentieth of that on average; sums are taken in float.
+//
+// C is computed in squares of 32 x 32: two by two tiles. Both factors lie in blocks of 32 of the inner index, each block four tiles: hi of
+// the first 16 rows (of A; columns of B), hi of the other 16, lo of the first, lo of the others. A tile of A is 16 rows of 32 bf16; one of B is
+// 16 rows, each of 16 pairs: columns 0 ... 15 of rows 2 r and 2 r + 1. B is packed so for panels of 32 columns, within blocks of kDepth
+// rows; A is split on the way, 32 rows by kDepth at a time.
+#pragma once
+#include <immintrin.h>
+
+#include "kernel/kernels.h"
+#include "kernel/product.h"
+
+namespace synpo::SYNPO_TARGET {
+
+struct AmxProduct {
+  static constexpr int kSide = 32;                    // of the squares of C, and of the blocks of the inner index
+  static constexpr int kTile = 16 * 32;               // bf16 values of a tile
+  static constexpr int kBlock = 4 * kTile;            // and of a block
+  static constexpr int kDepth = 256;
+  using Half = unsigned short;
+
+  static int round_up(int n) { return (n + kSide - 1) / kSide * kSide; }
+  static size_t packed_size(int k, int n) { return size_t(round_up(k)) * round_up(n); }  // two halves are as long as one float
+
+  static void pack(Op op, int k, int n, const float* b, int ldb, float* packed) {
+    Half* to = reinterpret_cast<Half*>(packed);
+    for (int begin = 0; begin < k; begin += kDepth) {
+      const int end = smaller(k, begin + kDepth);
+      for (int first = 0; first < n; first += kSide)
+        for (int p = begin; p < end; p += kSide, to += kBlock)
+          for (int half = 0; half < 2; ++half) {
+            const int column = first + 16 * half;
+            Half* hi = to + half * kTile;
+            if (op == Op::kAsIs)
+              split<Pairs::kOfRows, false>(b + size_t(p) * ldb + column, ldb, k - p, n - column, hi, hi + 2 * kTile);
+            else
+              split<Pairs::kOfColumns, true>(b + size_t(column) * ldb + p, ldb, n - column, k - p, hi, hi + 2 * kTile);
+          }
+    }
+  }
+
+  static void multiply(Op op, int m, int n, int k, const float* a, int lda, const float* packed, float* c, int ldc, bool accumulate) {
+    if (k == 0) return Product<float>::multiply(op, m, n, k, a, lda, packed, c, ldc, accumulate);
+    configure();
+    alignas(64) Half left[kDepth / kSide * kBlock];
+    const Half* right = reinterpret_cast<const Half*>(packed);
+    for (int begin = 0; begin < k; begin += kDepth) {
+      const int blocks = (smaller(k - begin, kDepth) + kSide - 1) / kSide;
+      for (int i = 0; i < m; i += kSide) {
+        for (int q = 0; q < blocks; ++q)
+          for (int half = 0; half < 2; ++half) {
+            const int row = i + 16 * half, p = begin + q * kSide;
+            Half* hi = left + q * kBlock + half * kTile;
+            if (op == Op::kAsIs)
+              split<Pairs::kOfColumns, false>(a + size_t(row) * lda + p, lda, m - row, k - p, hi, hi + 2 * kTile);
+            else
+              split<Pairs::kOfRows, true>(a + size_t(p) * lda + row, lda, k - p, m - row, hi, hi + 2 * kTile);
+          }
+        for (int first = 0; first < n; first += kSide)
+          square(blocks, left, right + size_t(first / kSide) * blocks * kBlock, smaller(kSide, m - i), smaller(kSide, n - first),
+                 c + size_t(i) * ldc + first, ldc, accumulate || begin > 0);
+      }
+      right += size_t(round_up(n) / kSide) * blocks * kBlock;
+    }
+  }
+
+ private:
+  // Square [rows, columns] of C += left right, over `blocks` blocks. Tiles 0 to 3 are C's, 4 and 5 A's, 6 and 7 B's.
+  static void square(int blocks, const Half* left, const Half* right, int rows, int columns, float* c, int ldc, bool accumulate) {
+    alignas(64) float edge[kSide * kSide];
+    const bool whole = rows == kSide && columns == kSide;
+    float* to = whole ? c : edge;
+    const int stride = whole ? ldc : kSide;
+    for (int i = 0; !whole && accumulate && i < rows; ++i)
+      for (int j = 0; j < columns; ++j) edge[i * kSide + j] = c[size_t(i) * ldc + j];
+    asm volatile("" ::: "memory");  // the compiler is not told what tile instructions read and write
+    if (accumulate) {
+      _tile_loadd(0, to, stride * 4);
+      _tile_loadd(1, to + 16, stride * 4);
+      _tile_loadd(2, to + 16 * stride, stride * 4);
+      _tile_loadd(3, to + 16 * stride + 16, stride * 4);
+    } else {
+      _tile_zero(0);
+      _tile_zero(1);
+      _tile_zero(2);
+      _tile_zero(3);
+    }
+    for (int q = 0; q < blocks; ++q, left += kBlock, right += kBlock) {
+      _tile_loadd(4, left, 64);
+      _tile_loadd(5, left + kTile, 64);
+      _tile_loadd(6, right + 2 * kTile, 64);
+      _tile_loadd(7, right + 3 * kTile, 64);
+      add_products();
+      _tile_loadd(6, right, 64);
+      _tile_loadd(7, right + kTile, 64);
+      add_products();
+      _tile_loadd(4, left + 2 * kTile, 64);
+      _tile_loadd(5, left + 3 * kTile, 64);
+      add_products();
+    }
+    _tile_stored(0, to, stride * 4);
+    _tile_stored(1, to + 16, stride * 4);
+    _tile_stored(2, to + 16 * stride, stride * 4);
+    _tile_stored(3, to + 16 * stride + 16, stride * 4);
+    asm volatile("" ::: "memory");
+    if (whole) return;
+    for (int i = 0; i < rows; ++i)
+      for (int j = 0; j < columns; ++j) c[size_t(i) * ldc + j] = edge[i * kSide + j];
+  }
+
+  static void add_products() {
+    _tile_dpbf16ps(0, 4, 6);
+    _tile_dpbf16ps(1, 4, 7);
+    _tile_dpbf16ps(2, 5, 6);
+    _tile_dpbf16ps(3, 5, 7);
+  }
+
+  // Once a thread: all eight tiles are 16 rows of 64 bytes.
+  static void configure() {
+    static thread_local bool done = false;
+    if (done) return;
+    struct {
+      unsigned char palette = 1, start_row = 0, reserved[14] = {};
+      unsigned short row_bytes[16] = {64, 64, 64, 64, 64, 64, 64, 64};
+      unsigned char rows[16] = {16, 16, 16, 16, 16, 16, 16, 16};
+    } shape;
+    _tile_loadconfig(&shape);
+    done = true;
+  }
+
+  // A tile's pairs are neighbours in a column of what lies in memory (kOfRows: rows 2 r and 2 r + 1), or neighbours in a row.
+  enum class Pairs { kOfRows, kOfColumns };
+
+  // Splits what lies at `from`, 32 x 16 (pairs of rows) or 16 x 32 (pairs of columns), zero beyond rows and columns, into two tiles;
+  // kFlip exchanges the tile's rows and columns, pairs staying pairs.
+  template <Pairs pairs, bool kFlip>
+  static void split(const float* from, int ld, int rows, int columns, Half* hi, Half* lo) {
+    __m512i h[16], l[16];
+    const auto mask = [](int count) { return __mmask16(count >= 16 ? 0xffff : count > 0 ? (1u << count) - 1 : 0); };
+    for (int r = 0; r < 16; ++r) {
+      __m512 first, second;
+      if constexpr (pairs == Pairs::kOfRows) {
+        first = _mm512_maskz_loadu_ps(2 * r < rows ? mask(columns) : 0, from + size_t(2 * r) * ld);
+        second = _mm512_maskz_loadu_ps(2 * r + 1 < rows ? mask(columns) : 0, from + size_t(2 * r + 1) * ld);
+      } else {
+        first = _mm512_maskz_loadu_ps(r < rows ? mask(columns) : 0, from + size_t(r) * ld);
+        second = _mm512_maskz_loadu_ps(r < rows ? mask(columns - 16) : 0, from + size_t(r) * ld + 16);
+      }
+      const __m512i first_hi = rounded(first), second_hi = rounded(second);
+      const __m512i first_lo = rounded(_mm512_sub_ps(first, _mm512_castsi512_ps(first_hi)));
+      const __m512i second_lo = rounded(_mm512_sub_ps(second, _mm512_castsi512_ps(second_hi)));
+      if constexpr (pairs == Pairs::kOfRows) {
+        h[r] = _mm512_or_si512(_mm512_srli_epi32(first_hi, 16), second_hi);
+        l[r] = _mm512_or_si512(_mm512_srli_epi32(first_lo, 16), second_lo);
+      } else {
+        h[r] = upper_halves(first_hi, second_hi);
+        l[r] = upper_halves(first_lo, second_lo);
+      }
+    }
+    if constexpr (kFlip) {
+      transpose(h);
+      transpose(l);
+    }
+    for (int r = 0; r < 16; ++r) {
+      _mm512_store_si512(hi + 32 * r, h[r]);
+      _mm512_store_si512(lo + 32 * r, l[r]);
+    }
+  }
+
+  // To the nearest bf16, in the upper halves; the lower ones are zero.
+  static __m512i rounded(__m512 x) {
+    const __m512i up = _mm512_add_epi32(_mm512_castps_si512(x), _mm512_set1_epi32(0x8000));
+    return _mm512_and_si512(up, _mm512_set1_epi32(int(0xffff0000)));
+  }
+
+  static __m512i upper_halves(__m512i first, __m512i second) {
+    alignas(64) static constexpr Half kOdd[32] = {1,  3,  5,  7,  9,  11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31,
+                                                  33, 35, 37, 39, 41, 43, 45, 47, 49, 51, 53, 55, 57, 59, 61, 63};
+    return _mm512_permutex2var_epi16(first, _mm512_load_si512(kOdd), second);
+  }
+
+  // Transposes 16 x 16 values of 32 bits: quarters of 4 x 4, then 4 x 4 of those.
+  static void transpose(__m512i* rows) {
+    __m512i t[16];
+    for (int i = 0; i < 16; i += 4) {
+      const __m512i a = _mm512_unpacklo_epi32(rows[i], rows[i + 1]), b = _mm512_unpackhi_epi32(rows[i], rows[i + 1]);
+      const __m512i c = _mm512_unpacklo_epi32(rows[i + 2], rows[i + 3]), d = _mm512_unpackhi_epi32(rows[i + 2], rows[i + 3]);
+      t[i] = _mm512_unpacklo_epi64(a, c);
+      t[i + 1] = _mm512_unpackhi_epi64(a, c);
+      t[i + 2] = _mm512_unpacklo_epi64(b, d);
+      t[i + 3] = _mm512_unpackhi_epi64(b, d);
+    }
+    // t[4 g + j] holds in its quarter q the column 4 q + j of rows 4 g ... 4 g + 3.
+    for (int j = 0; j < 4; ++j) {
+      const __m512i a = _mm512_shuffle_i32x4(t[j], t[4 + j], 0x44), b = _mm512_shuffle_i32x4(t[8 + j], t[12 + j], 0x44);
+      const __m512i c = _mm512_shuffle_i32x4(t[j], t[4 + j], 0xee), d = _mm512_shuffle_i32x4(t[8 + j], t[12 + j], 0xee);
+      rows[j] = _mm512_shuffle_i32x4(a, b, 0x88);
+      rows[4 + j] = _mm512_shuffle_i32x4(a, b, 0xdd);
+      rows[8 + j] = _mm512_shuffle_i32x4(c, d, 0x88);
+      rows[12 + j] = _mm512_shuffle_i32x4(c, d, 0xdd);
+    }
+  }
+};
+
+}  // namespace synpo::SYNPO_TARGET
