@@ -48,6 +48,10 @@ class Imitation {
 
  private:
   void add_trajectories(TrajectoryStream& stream);
+  // Lets the running episodes make a step each, by the learner's scores, and takes the hard ones into the minibatch.
+  void draw_hard();
+  // Scores of steps with the running statistics, [batch.size(), kGridActions].
+  void score(const Minibatch& batch, float* scores);
   // What is evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const { return options_.averaging > 0 ? average_statistics_ : model_.statistics; }
@@ -59,7 +63,7 @@ class Imitation {
   ReplayMemory memory_;
   RunningDraw running_;
   Buffer<float> gradient_, first_moment_, second_moment_, average_, average_statistics_, logits_;
-  Minibatch batch_;
+  Minibatch batch_, candidates_;
   std::vector<int> greedy_;
   int64_t total_updates_ = 0;
   uint64_t stream_lines_ = 0, stream_hash_ = Hash().value();

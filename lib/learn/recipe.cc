@@ -30,6 +30,8 @@ constexpr Hyper kHypers[] = {
     {"fill", &O::fill, 1, 1e7, true, "trajectories read before the first update"},
     {"running", &O::running, 1, 1e7, true, "episodes that run side by side"},
     {"balance", &O::balance, 0.001, 1, false, "probability of taking a step that is not on a treasure"},
+    {"candidates", &O::candidates, 0, 64, false, "steps looked at for each step taken, the harder ones; 0: taken unseen"},
+    {"ease", &O::ease, 0, 1, false, "weight of a step that the policy gets right, beside the probability of error"},
     {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
     {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
@@ -73,7 +75,7 @@ std::string expectation(const Hyper& hyper) {
 }  // namespace
 
 RunningOptions O::running_options() const {
-  return {int(running), balance, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
+  return {int(running), candidates > 0 ? 1 : balance, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
 }
 
 PolicyShape O::shape(const GridSet& world) const {
@@ -149,7 +151,7 @@ ImitationOptions RecipeOptions::result() const {
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
   if (options.batch_states == 0)
-    for (const char* name : {"balance", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
+    for (const char* name : {"balance", "candidates", "ease", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
   return options;
 }

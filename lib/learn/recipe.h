@@ -18,6 +18,7 @@ struct ImitationOptions {
   double read = 1;              // trajectories read before an update
   double fill = 1;              // trajectories read before the first update
   double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = 300;
+  double candidates = 0, ease = 0.05;  // steps looked at for each step taken, and the weight of those that the learner knows
   // The optimiser.
   double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0.001;
   double averaging = 0;         // decay of the averaged weights; 0: none
@@ -29,6 +30,7 @@ struct ImitationOptions {
 
   LossWeights losses() const { return {reward_loss, env_loss, task_loss}; }
   RunningOptions running_options() const;
+  HardOptions hard_options() const { return {int(batch_states), balance, ease}; }
   PolicyShape shape(const GridSet& world) const;
   AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay}; }
   // Learning rate of update `update` (from 0) of `total`: linear warm-up, then constant or half a cosine down to final_rate.

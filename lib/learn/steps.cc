@@ -1,6 +1,9 @@
 #include "learn/steps.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <functional>
 
 #include "base/error.h"
 
@@ -27,6 +30,41 @@ void Minibatch::resize(int size) {
   taken.resize(size);
   reward.resize(size);
   kind.resize(size);
+}
+
+std::vector<int> pick_hard(const Minibatch& candidates, const float* scores, const HardOptions& options, Random random) {
+  // Efraimidis and Spirakis (2006): the largest of u^(1 / weight), u uniform, are such a draw. Compared as log(u) / weight.
+  std::vector<std::pair<double, int>> keys(candidates.size());
+  for (int i = 0; i < candidates.size(); ++i) {
+    const float* score = scores + size_t(i) * kGridActions;
+    const float top = *std::max_element(score, score + kGridActions);
+    double sum = 0;
+    for (int a = 0; a < kGridActions; ++a) sum += std::exp(double(score[a] - top));
+    const double right = std::exp(double(score[candidates.label[i]] - top)) / sum;
+    const bool treasure = candidates.kind[i] == StepKind::kPick || candidates.kind[i] == StepKind::kWalkOn;
+    const double weight = (treasure ? 1 : options.balance) * (options.ease + 1 - right);
+    keys[i] = {std::log(1 - random.uniform()) / std::max(weight, 1e-9), i};
+  }
+  const int count = std::min(options.count, candidates.size());
+  std::partial_sort(keys.begin(), keys.begin() + count, keys.end(), std::greater<>());
+  std::vector<int> chosen(count);
+  for (int i = 0; i < count; ++i) chosen[i] = keys[i].second;
+  std::sort(chosen.begin(), chosen.end());
+  return chosen;
+}
+
+void take_steps(const Minibatch& candidates, const std::vector<int>& chosen, Minibatch& to) {
+  to.resize(int(chosen.size()));
+  for (size_t i = 0; i < chosen.size(); ++i) {
+    const int from = chosen[i];
+    std::copy_n(candidates.pictures.data() + from * kPicture, kPicture, to.pictures.data() + i * kPicture);
+    to.env[i] = candidates.env[from];
+    to.task[i] = candidates.task[from];
+    to.label[i] = candidates.label[from];
+    to.taken[i] = candidates.taken[from];
+    to.reward[i] = candidates.reward[from];
+    to.kind[i] = candidates.kind[from];
+  }
 }
 
 void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,

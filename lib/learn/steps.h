@@ -3,12 +3,14 @@
 // TrajectoryDraw is Algorithm 1: whole trajectories, uniformly, all their steps.
 // RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn; one starts as
 // a trajectory of the memory and follows it, or is driven off it by random moves and the learner's own greedy moves, where the
-// planner then gives the label. Steps on which the agent stands on a treasure are always taken, others with a probability.
+// planner then gives the label. Steps on which the agent stands on a treasure are always taken, others with a probability; or all steps are
+// candidates, and the learner's own scores tell which are worth learning from (pick_hard).
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "base/parallel.h"
+#include "base/random.h"
 #include "learn/memory.h"
 #include "world/view.h"
 
@@ -35,6 +37,16 @@ class TrajectoryDraw {
   static void draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed, int64_t update,
                    Minibatch& batch);
 };
+
+// `count` of the candidates, in ascending order, drawn without replacement by weight: balance (1 where the agent stands on a treasure) times
+// (ease + the probability that the learner gives to actions that are not the label). scores [candidates.size(), kGridActions] are its logits.
+struct HardOptions {
+  int count = 0;
+  double balance = 1, ease = 0;
+};
+std::vector<int> pick_hard(const Minibatch& candidates, const float* scores, const HardOptions& options, Random random);
+// to = the chosen steps.
+void take_steps(const Minibatch& candidates, const std::vector<int>& chosen, Minibatch& to);
 
 struct RunningOptions {
   int episodes = 8192;      // that run side by side
