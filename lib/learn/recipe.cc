@@ -34,6 +34,7 @@ constexpr Hyper kHypers[] = {
     {"ease", &O::ease, 0, 1, false, "weight of a step that the policy gets right, beside the probability of error"},
     {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
+    {"probe", &O::probe, 0, 1, false, "probability that the reward of a random action is learned, not of the one taken"},
     {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
     {"roll-limit", &O::roll_limit, 1, kGridStepLimit, true, "steps after which a running episode is given up"},
     {"lr", &O::learning_rate, 0, 1, false, "learning rate of Adam", "The optimiser"},
@@ -44,6 +45,7 @@ constexpr Hyper kHypers[] = {
     {"beta2", &O::beta2, 0, 0.9999999, false, "decay of Adam's second moment"},
     {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
     {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
+    {"decoupled-decay", &O::decoupled_decay, 0, 100, false, "AdamW: parameters shrink by this times the learning rate"},
     {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
     {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
     {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
@@ -75,7 +77,7 @@ std::string expectation(const Hyper& hyper) {
 }  // namespace
 
 RunningOptions O::running_options() const {
-  return {int(running), candidates > 0 ? 1 : balance, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
+  return {int(running), candidates > 0 ? 1 : balance, roll_in, roll_noise, fresh_starts != 0, int(roll_limit), probe};
 }
 
 PolicyShape O::shape(const GridSet& world) const {
@@ -151,7 +153,7 @@ ImitationOptions RecipeOptions::result() const {
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
   if (options.batch_states == 0)
-    for (const char* name : {"balance", "candidates", "ease", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
+    for (const char* name : {"balance", "candidates", "ease", "roll-in", "roll-noise", "probe", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
   return options;
 }

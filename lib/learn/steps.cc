@@ -167,11 +167,12 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
       batch.env[i] = running.pair.env;
       batch.task[i] = running.pair.task;
       batch.label[i] = label;
-      batch.taken[i] = move;
+      const int tried = options_.probe > 0 && random.uniform() < options_.probe ? int(random.below(kGridActions)) : move;
+      batch.taken[i] = tried;
       batch.kind[i] = step_kind(running.state, label);
       GridState after = running.state;
       const Maze& maze = world_->maze(running.pair.env);
-      batch.reward[i] = float(grid_step(maze, world_->tasks()[running.pair.task], after, move).reward_cents) / 100;
+      batch.reward[i] = float(grid_step(maze, world_->tasks()[running.pair.task], after, tried).reward_cents) / 100;
       draw_history(maze, running.history, window, batch.pictures.data() + size_t(i) * kPicture);
     }
   });

@@ -55,6 +55,7 @@ struct RunningOptions {
   double noise = 0;         // probability of a random move otherwise
   bool fresh_starts = false;  // agent and treasures are placed anew; the memory then gives the pair alone
   int step_limit = kGridStepLimit;
+  double probe = 0;         // probability that Minibatch::taken is any action, with the reward that it would have had
 };
 
 class RunningDraw {

@@ -110,8 +110,9 @@ void Conv<T>::gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const 
 
 template <class T>
 void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
+  if (form_ == Form::kPlain) return gemm(Op::kAsIs, samples * rows_, x, depth_, forward_[0], y, out_);
+  for (; samples > unit(); samples -= unit(), x += unit() * x_size(), y += unit() * y_size()) forward(unit(), x, y, scratch);
   const int rows = samples * rows_;
-  if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, x, depth_, forward_[0], y, out_);
   const size_t inputs_size = size_t(products_) * rows * depth_;
   T* inputs = scratch.grow(inputs_size + (transformed() ? size_t(products_) * rows * out_ : 0));
   T* outputs = transformed() ? inputs + inputs_size : y;

@@ -34,8 +34,8 @@ class Conv {
   int products() const { return products_; }
   void prepare(int p, const T* weight, bool training);
 
-  // Samples that are worth passing to forward() at once: transformed, they fit the second-level cache, and each weight that comes from further
-  // away serves as many rows as may be.
+  // Samples that forward() takes at once: transformed, they fit the second-level cache, and each weight that comes from further away serves as
+  // many rows as may be.
   int unit() const { return side_out_ > 4 ? 16 : side_out_ > 2 ? 32 : 64; }
   // One thread. `scratch` belongs to the thread.
   void forward(int samples, const T* x, T* y, Buffer<T>& scratch) const;

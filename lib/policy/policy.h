@@ -68,7 +68,7 @@ class Policy {
                                  const std::vector<std::pair<int, int>>& pairs) = 0;
   // Scores [size, actions] of states, state i of pair number pair[i], with frozen statistics. One thread's part: `thread` picks
   // its scratch memory. At most kInferenceUnit states.
-  static constexpr int kInferenceUnit = 32;
+  static constexpr int kInferenceUnit = 64;
   virtual void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) = 0;
 
  protected:
