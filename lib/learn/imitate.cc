@@ -36,7 +36,7 @@ void copy(const Buffer<float>& from, Buffer<float>& to) {
 Imitation::Imitation(const GridSet& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
                      std::vector<EnvTask> seen, uint64_t seed)
     : world_(world), parallel_(parallel), options_(options), model_(fresh_model(world, method, options, std::move(seen), seed)),
-      memory_(size_t(options.memory)), running_(world, options.running_options(), seed), seen_grows_(model_.seen.empty()) {
+      memory_(size_t(options.memory)), running_(world, options.running_options(0, 0), seed), seen_grows_(model_.seen.empty()) {
   const size_t count = model_.parameters.size();
   gradient_.grow(count);
   first_moment_.grow(count);
@@ -124,7 +124,7 @@ void Imitation::draw_hard() {
   greedy_.resize(count);
   for (int i = 0; i < count; ++i) greedy_[i] = argmax(scores + size_t(i) * kGridActions, kGridActions);
   const Random random(model_.seed, Purpose::kBatch, 0, uint64_t(model_.updates));
-  take_steps(candidates_, pick_hard(candidates_, scores, options_.hard_options(), random), batch_);
+  take_steps(candidates_, pick_hard(candidates_, scores, options_.hard_options(model_.updates, total_updates_), random), batch_);
   running_.advance(memory_, greedy_, model_.updates);
 }
 
@@ -132,6 +132,7 @@ bool Imitation::update(TrajectoryStream& stream) {
   add_trajectories(stream);
   if (memory_.size() == 0) return false;
   const bool single_steps = options_.batch_states > 0, hard = options_.candidates > 0;
+  running_.set_options(options_.running_options(model_.updates, total_updates_));
   if (single_steps && hard)
     draw_hard();
   else if (single_steps)

@@ -30,9 +30,12 @@ constexpr Hyper kHypers[] = {
     {"fill", &O::fill, 1, 1e7, true, "trajectories read before the first update"},
     {"running", &O::running, 1, 1e7, true, "episodes that run side by side"},
     {"balance", &O::balance, 0.001, 1, false, "probability of taking a step that is not on a treasure"},
+    {"balance-final", &O::balance_final, 0, 1, false, "what --balance moves to by the run's end; 0: it stays"},
     {"candidates", &O::candidates, 0, 64, false, "steps looked at for each step taken, the harder ones; 0: taken unseen"},
     {"ease", &O::ease, 0, 1, false, "weight of a step that the policy gets right, beside the probability of error"},
-    {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
+    {"roll-in", &O::roll_in, 0, 1, false, "probability, behind a taken step, that the learner's own greedy moves take over"},
+    {"roll-length", &O::roll_length, 1, 1000, false, "how many moves the learner then makes in the mean; all these steps are taken"},
+    {"roll-in-final", &O::roll_in_final, 0, 1, false, "what --roll-in moves to by the run's end; 0: it stays"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
     {"probe", &O::probe, 0, 1, false, "probability that the reward of a random action is learned, not of the one taken"},
     {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
@@ -76,8 +79,22 @@ std::string expectation(const Hyper& hyper) {
 
 }  // namespace
 
-RunningOptions O::running_options() const {
-  return {int(running), candidates > 0 ? 1 : balance, roll_in, roll_noise, fresh_starts != 0, int(roll_limit), probe};
+namespace {
+
+// From `begin` in a straight line to `end`, or constant where that is 0.
+double moving(double begin, double end, int64_t update, int64_t total) {
+  return end == 0 ? begin : begin + (end - begin) * std::min(1.0, double(update) / std::max<double>(1, double(total) - 1));
+}
+
+}  // namespace
+
+HardOptions O::hard_options(int64_t update, int64_t total) const {
+  return {int(batch_states), moving(balance, balance_final, update, total), ease};
+}
+
+RunningOptions O::running_options(int64_t update, int64_t total) const {
+  const double taken = candidates > 0 ? 1 : moving(balance, balance_final, update, total);
+  return {int(running), taken, moving(roll_in, roll_in_final, update, total), roll_length, roll_noise, fresh_starts != 0, int(roll_limit), probe};
 }
 
 PolicyShape O::shape(const GridSet& world) const {
@@ -153,7 +170,7 @@ ImitationOptions RecipeOptions::result() const {
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
   if (options.batch_states == 0)
-    for (const char* name : {"balance", "candidates", "ease", "roll-in", "roll-noise", "probe", "fresh-starts", "roll-limit", "running"})
+    for (const char* name : {"balance", "balance-final", "candidates", "ease", "roll-in", "roll-in-final", "roll-length", "roll-noise", "probe", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
   return options;
 }

@@ -102,7 +102,7 @@ void RunningDraw::restart(const ReplayMemory& memory, Running& running, uint32_t
   const uint32_t place = random.below(uint32_t(memory.size()));
   const GridEpisode& episode = memory[place];
   const uint32_t restarts = running.restarts + 1;
-  running = {episode.pair, episode.start, {}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started};
+  running = {episode.pair, episode.start, {}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started, false};
   if (options_.fresh_starts) running.state = grid_reset(world_->maze(episode.pair.env), random);
   running.history.push(running.state.now);
 }
@@ -160,7 +160,7 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
       while (true) {
         label_and_move(memory, running, label, move);
         if (options_.noise > 0 && random.uniform() < options_.noise) move = int(random.below(kPick));
-        if (treasure_under_agent(running.state.now) >= 0 || random.uniform() < options_.balance) break;
+        if (running.own || treasure_under_agent(running.state.now) >= 0 || random.uniform() < options_.balance) break;
         step(memory, running, number, move);
       }
       moves_[i] = move;
@@ -181,9 +181,10 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
 void RunningDraw::advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update) {
   for (size_t i = 0; i < drawn_.size(); ++i) {
     const uint32_t number = drawn_[i];
+    Running& running = running_[number];
     Random random(seed_, Purpose::kOwnMove, number, uint64_t(update));
-    const bool own = options_.roll_in > 0 && random.uniform() < options_.roll_in;
-    step(memory, running_[number], number, own ? greedy[i] : moves_[i]);
+    running.own = random.uniform() < (running.own ? 1 - 1 / options_.roll_length : options_.roll_in);
+    step(memory, running, number, running.own ? greedy[i] : moves_[i]);
   }
 }
 
@@ -193,7 +194,7 @@ void RunningDraw::save(SafeTensors& file, const std::string& prefix) const {
   std::vector<int64_t> words;
   for (const Running& r : running_) {
     words.insert(words.end(), {r.pair.env, r.pair.task, r.state.picked, r.state.steps, int64_t(r.serial), r.place, r.restarts, r.following,
-                               r.started, r.history.count});
+                               r.started, r.own, r.history.count});
     const auto add_frame = [&](const GridFrame& frame) {
       words.push_back(frame.agent);
       for (const uint8_t cell : frame.treasures) words.push_back(cell);
@@ -207,7 +208,7 @@ void RunningDraw::save(SafeTensors& file, const std::string& prefix) const {
 }
 
 void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const ReplayMemory& memory) {
-  constexpr size_t kWords = 10 + (1 + kHistory) * (1 + kTreasures);
+  constexpr size_t kWords = 11 + (1 + kHistory) * (1 + kTreasures);
   const std::vector<int64_t> words = file.get<int64_t>(prefix + "running");
   int64_t next = 0;
   file.get(prefix + "next", &next, 1);
@@ -231,6 +232,7 @@ void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const
     r.restarts = uint32_t(take(0, UINT32_MAX));
     r.following = take(0, 1) != 0;
     r.started = take(0, 1) != 0;
+    r.own = take(0, 1) != 0;
     r.history.count = uint8_t(take(0, kHistory));
     const auto take_frame = [&](GridFrame& frame) {
       frame.agent = uint8_t(take(0, 255));

@@ -1,10 +1,10 @@
 // The steps of a minibatch, drawn from the replay memory in one of two ways.
 //
 // TrajectoryDraw is Algorithm 1: whole trajectories, uniformly, all their steps.
-// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn; one starts as
-// a trajectory of the memory and follows it, or is driven off it by random moves and the learner's own greedy moves, where the
-// planner then gives the label. Steps on which the agent stands on a treasure are always taken, others with a probability; or all steps are
-// candidates, and the learner's own scores tell which are worth learning from (pick_hard).
+// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn. Some follow
+// a trajectory of the memory, or are driven off it by random moves, where the planner then gives the label: their steps on which the agent
+// stands on a treasure are always taken, others with a probability. Now and then the learner's greedy moves take over for a while, and
+// every step is taken. Or all steps of all episodes are candidates, and the learner's scores tell which are worth learning from (pick_hard).
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -51,7 +51,8 @@ void take_steps(const Minibatch& candidates, const std::vector<int>& chosen, Min
 struct RunningOptions {
   int episodes = 8192;      // that run side by side
   double balance = 1;       // probability of taking a step that is not on a treasure
-  double roll_in = 0;       // probability of the learner's own greedy move behind a taken step
+  double roll_in = 0;       // probability, behind a taken step, that the learner's own greedy moves take over
+  double roll_length = 1;   // how many of them, in the mean; all these steps are taken
   double noise = 0;         // probability of a random move otherwise
   bool fresh_starts = false;  // agent and treasures are placed anew; the memory then gives the pair alone
   int step_limit = kGridStepLimit;
@@ -62,6 +63,8 @@ class RunningDraw {
  public:
   RunningDraw(const GridSet& world, const RunningOptions& options, uint64_t seed) : world_(&world), options_(options), seed_(seed) {}
 
+  // Takes over probabilities; the number of episodes stays.
+  void set_options(const RunningOptions& options) { options_ = options; }
   // The next `count` running episodes, each at its next step to be taken.
   void draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch);
   // Moves the episodes of the last draw() on, given the learner's greedy actions [count].
@@ -81,6 +84,7 @@ class RunningDraw {
     uint32_t restarts;
     bool following;    // actions so far are the trajectory's
     bool started;
+    bool own;          // goes the learner's way
   };
   void restart(const ReplayMemory& memory, Running& running, uint32_t number);
   // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.
