@@ -1,9 +1,9 @@
-// synpo-render: matrices, mazes and views as PNG pictures.
+// synpo-render: matrices, curves, mazes and views as PNG pictures.
+#include "synpo-render.h"
+
 #include <algorithm>
 
 #include "base/error.h"
-#include "base/io.h"
-#include "base/options.h"
 #include "draw/agent_view.h"
 #include "draw/heatmap.h"
 #include "draw/maze_picture.h"
@@ -15,21 +15,6 @@ using namespace synpo;
 
 namespace {
 
-// What every command takes: where the picture goes, its size and its font.
-struct PictureOptions {
-  std::string output = "-", font;
-  bool force = false;
-  double scale = 2;
-
-  void add_to(Options& options) {
-    options.section("picture")
-        .text('o', "output", "FILE", "write the PNG to FILE", output)
-        .flag('f', "force", "write to a terminal too", force)
-        .real(0, "scale", "X", "pixels per point (a cell's text is 9 points high)", scale, 0.25, 16)
-        .text(0, "font", "FILE", "TrueType font instead of DejaVu Sans", font);
-  }
-};
-
 const Maze& find_maze(const std::vector<Maze>& mazes, const std::string& name) {
   const auto found = std::find_if(mazes.begin(), mazes.end(), [&](const Maze& maze) { return maze.name == name; });
   if (found == mazes.end()) fail(Exit::kUsage, "no maze ", quoted(name), " in this world");
@@ -40,11 +25,6 @@ int find_task(const std::string& name) {
   for (size_t i = 0; i < grid_tasks().size(); ++i)
     if (grid_tasks()[i].name() == name) return int(i);
   fail(Exit::kUsage, "no task ", quoted(name), ": expected two of R B G O P, such as R-B");
-}
-
-void finish(Output& output, const Canvas& canvas) {
-  output.write(canvas.png());
-  output.finish();
 }
 
 int heatmap(int argc, char** argv) {
@@ -128,8 +108,12 @@ int view(int argc, char** argv) {
 }
 
 int body(int argc, char** argv) {
-  return run_commands("synpo-render", "Draws success matrices, mazes and views as PNG.",
-                      {{"heatmap", "a success matrix", heatmap}, {"map", "mazes", map}, {"view", "what the agent sees", view}}, argc, argv);
+  return run_commands("synpo-render", "Draws success matrices, learning curves, mazes and views as PNG.",
+                      {{"heatmap", "a success matrix", heatmap},
+                       {"curves", "run logs as curves", curves},
+                       {"map", "mazes", map},
+                       {"view", "what the agent sees", view}},
+                      argc, argv);
 }
 
 }  // namespace

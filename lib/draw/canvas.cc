@@ -1,5 +1,6 @@
 #include "draw/canvas.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -77,6 +78,15 @@ void Canvas::blend(int x, int y, uint8_t coverage, Rgb colour) {
   cv::Vec3b& pixel = pixels_->bgr.at<cv::Vec3b>(y, x);
   const uint8_t to[3] = {colour.b, colour.g, colour.r};
   for (int i = 0; i < 3; ++i) pixel[i] = uint8_t((pixel[i] * (255 - coverage) + to[i] * coverage + 127) / 255);
+}
+
+void Canvas::paint(const Mask& mask, Rgb colour, double opacity) {
+  const Box& box = mask.box;
+  for (int y = std::max(0, box.y); y < std::min(height(), box.bottom()); ++y)
+    for (int x = std::max(0, box.x); x < std::min(width(), box.right()); ++x) {
+      const uint8_t coverage = mask.coverage[size_t(y - box.y) * box.width + (x - box.x)];
+      blend(x, y, uint8_t(std::lround(coverage * opacity)), colour);
+    }
 }
 
 void Canvas::text(int x, int y, const std::string& text, int size, Rgb colour, Across across, Upright upright) {

@@ -20,6 +20,12 @@ struct Point {
   double x, y;
 };
 
+// How much of each pixel of the box something covers, 0 to 255.
+struct Mask {
+  Box box;
+  std::vector<uint8_t> coverage;  // [height, width]
+};
+
 // Where the point given lies in the text: across, and up and down. Middle is the middle of a digit's height.
 enum class Across { kLeft, kCentre, kRight };
 enum class Upright { kTop, kMiddle, kBaseline };
@@ -41,6 +47,9 @@ class Canvas {
   void frame(const Box& box, int line, Rgb colour);
   void polygon(const std::vector<Point>& corners, Rgb colour);
   void disc(Point centre, double radius, Rgb colour);
+
+  // Colours what the mask covers; `opacity` from 0 to 1. The box may reach beyond the picture.
+  void paint(const Mask& mask, Rgb colour, double opacity = 1);
 
   void text(int x, int y, const std::string& text, int size, Rgb colour, Across across = Across::kLeft,
             Upright upright = Upright::kTop);

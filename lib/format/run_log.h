@@ -1,8 +1,9 @@
-// Run logs: TSV, a row a report, flushed (synpo-log(5)).
+// Run logs: TSV, a row a report, flushed, and read back (synpo-log(5)).
 #pragma once
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/io.h"
 
@@ -34,5 +35,17 @@ class RunLog {
   std::string path_;
   void put(const std::string& text);
 };
+
+// What a log's rows are put against. Minutes are of training up to the row: those of resumed runs are added up, and updates that
+// were done again count once.
+enum class RunLogAxis { kUpdates, kStates, kMinutes };
+
+struct RunLogTable {
+  std::vector<double> x;                     // rises from row to row
+  std::vector<std::vector<double>> columns;  // as asked for, x.size() each; NaN for NA
+};
+
+// Needs the column update, those of the axis, and `columns`. Throws kData, with the place, for anything that is no such log.
+RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns);
 
 }  // namespace synpo

@@ -6,6 +6,7 @@ setup() {
     mkdir "$BATS_TEST_TMPDIR/work"
     cd "$BATS_TEST_TMPDIR/work" || exit
     ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
+    printf 'update\tstates\tseen_success\tunseen_success\n1\t9\t0.5\tNA\n2\t18\t0.7\t0.4\n' >run.log
 }
 
 # Calls `$1 COMMAND...` for every command that writes, with standard input where it needs some; </dev/stdin begins it anew.
@@ -19,6 +20,7 @@ for_writers() {
     "$1" synpo-matrix summary m.tsv
     "$1" synpo-matrix merge m.tsv
     "$1" synpo-render heatmap m.tsv
+    "$1" synpo-render curves run.log
     "$1" synpo-render map
     "$1" synpo-render view
 }
@@ -115,7 +117,8 @@ for_writers() {
 }
 
 @test "binary output to a terminal is refused with 64, and before the work; -f forces it" {
-    for command in "synpo-train -q -n 3 <two.tsv" "synpo-render map" "synpo-render heatmap m.tsv" "synpo-render view"; do
+    for command in "synpo-train -q -n 3 <two.tsv" "synpo-render map" "synpo-render heatmap m.tsv" "synpo-render curves run.log" \
+        "synpo-render view"; do
         run -64 on_terminal "$command"
         says "standard output is a terminal and the output is binary: use -o FILE, or -f to force it"
     done
@@ -125,7 +128,7 @@ for_writers() {
 
 @test "where a stream is expected a terminal is refused with 64" {
     for command in "synpo-train -n 1 >x" "synpo-eval >x" "synpo-gen-expert --relabel" "synpo-matrix summary" "synpo-matrix merge" \
-        "synpo-render heatmap >x"; do
+        "synpo-render heatmap >x" "synpo-render curves >x"; do
         status=0
         timeout 20 script -qec "$command" /dev/null </dev/null >"$BATS_TEST_TMPDIR/err" || status=$?
         [ "$status" -eq 64 ] || complain "$command: exit code $status: $(cat "$BATS_TEST_TMPDIR/err")"
