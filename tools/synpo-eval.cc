@@ -18,14 +18,16 @@ namespace {
 int body(int argc, char** argv) {
   std::string checkpoint_path = "-", pairs_path, output_path = "-", record_path;
   int64_t count = 100, first = 0, seed = 1, threads = 0;
+  double temperature = kTemperature;
   bool describe = false, quiet = false;
   Options options("synpo-eval", "[-p PAIRS] [-n EPISODES] [OPTION]... < CHECKPOINT > MATRIX",
-                  "Runs the greedy policy of a checkpoint on every pair and counts successes.");
+                  "Runs the policy of a checkpoint on every pair and counts successes.");
   options.text('c', "checkpoint", "FILE", "the checkpoint", checkpoint_path)
       .text('p', "pairs", "FILE", "pairs to run, all its rows: TSV env, task (all pairs)", pairs_path)
       .integer('n', "count", "N", "episodes of every pair", count, 1, 100000000)
       .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", first, 0, INT64_MAX / 2)
       .integer('s', "seed", "N", "seed of the start states, which are the same for every checkpoint", seed, 0, INT64_MAX)
+      .real(0, "temperature", "T", "actions are drawn from the policy, its scores divided by T; 0: always the best one", temperature, 0, 1000)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)
       .text(0, "record", "FILE", "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix", record_path)
       .text('o', "output", "FILE", "write the matrix to FILE", output_path)
@@ -72,7 +74,7 @@ int body(int argc, char** argv) {
   EpisodeSink sink;
   if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
   const std::vector<PairResult> results =
-      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, kGridStepLimit}, sink,
+      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, kGridStepLimit, temperature}, sink,
                [&](size_t done) {
                  progress.update(done);
                  stop_if_asked();
@@ -82,6 +84,7 @@ int body(int argc, char** argv) {
   if (!output) return 0;
 
   Matrix matrix;
+  matrix.extra_columns = {"temperature"};
   const std::string run = hex(checkpoint.weights_hash());
   for (size_t p = 0; p < pairs.size(); ++p) {
     const PairResult& r = results[p];
@@ -105,6 +108,7 @@ int body(int argc, char** argv) {
     row.reward = double(r.reward_cents) / 100;
     row.length = r.length;
     row.part = rows[p].part;
+    row.extra = {concat(temperature)};
     matrix.rows.push_back(row);
   }
   write_matrix(*output, matrix);

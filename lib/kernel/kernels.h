@@ -30,10 +30,10 @@ struct Transform {
 };
 
 // What one step of Adam does to count values: g = gradient + decay * parameter, m and v its moments,
-// parameter = shrink * parameter - rate * m / (sqrt(v) * correction + epsilon); average (may be null) = keep * average + (1 - keep) * parameter.
+// parameter -= rate * m / (sqrt(v) * correction + epsilon); average (may be null) = keep * average + (1 - keep) * parameter.
 template <class T>
 struct AdamFactors {
-  T beta1, beta2, decay, shrink, rate, correction, epsilon, keep;
+  T beta1, beta2, decay, rate, correction, epsilon, keep;
 };
 
 template <class T>

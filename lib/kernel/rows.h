@@ -120,7 +120,7 @@ struct Rows {
       const T g = gradient[i] + factors.decay * parameter[i];
       m[i] = factors.beta1 * m[i] + (1 - factors.beta1) * g;
       v[i] = factors.beta2 * v[i] + (1 - factors.beta2) * g * g;
-      parameter[i] = factors.shrink * parameter[i] - factors.rate * m[i] / (root(v[i]) * factors.correction + factors.epsilon);
+      parameter[i] -= factors.rate * m[i] / (root(v[i]) * factors.correction + factors.epsilon);
     }
     if (average)
       for (size_t i = 0; i < count; ++i) average[i] = factors.keep * average[i] + (1 - factors.keep) * parameter[i];

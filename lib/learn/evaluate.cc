@@ -1,6 +1,7 @@
 #include "learn/evaluate.h"
 
 #include <algorithm>
+#include <cmath>
 #include <mutex>
 
 #include "nn/loss.h"
@@ -20,6 +21,19 @@ struct Lane {
   std::vector<int> rewards;
   int64_t reward_cents = 0;
 };
+
+// The best action, or one drawn from softmax(scores / temperature) where that is over 0; uniform() gives a number in [0, 1).
+template <class Uniform>
+int choose(const float* scores, double temperature, Uniform&& uniform) {
+  if (temperature == 0) return argmax(scores, kGridActions);
+  const float top = *std::max_element(scores, scores + kGridActions);
+  double weight[kGridActions], sum = 0;
+  for (int a = 0; a < kGridActions; ++a) sum += weight[a] = std::exp((scores[a] - top) / temperature);
+  double left = uniform() * sum;
+  for (int a = 0; a < kGridActions - 1; ++a)
+    if ((left -= weight[a]) < 0) return a;
+  return kGridActions - 1;
+}
 
 }  // namespace
 
@@ -74,7 +88,10 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
         Lane& lane = lanes[i];
         const EnvTask pair = lane.played.pair;
         const Task& task = world.tasks()[pair.task];
-        const int action = argmax(logits.data() + i * kGridActions, kGridActions);
+        const int action = choose(logits.data() + i * kGridActions, options.temperature, [&] {
+          const EvalEpisode& job = episodes[lane.job];
+          return Random(options.seed, Purpose::kSample, world.pair_number(pair.env, pair.task), uint64_t(job.number) << 16 | lane.state.steps).uniform();
+        });
         if (sink) {
           lane.played.labels.push_back(uint8_t(world.planner(pair.env).action(task, lane.state)));
           lane.played.actions.push_back(uint8_t(action));

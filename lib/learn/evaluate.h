@@ -21,10 +21,15 @@ struct EvalEpisode {
   int64_t number;
 };
 
+// The temperature that tools act with where nothing else is said: with the best action alone, a policy that has learned most of its moves
+// still walks in circles where it has not.
+constexpr double kTemperature = 0.5;
+
 struct EvalOptions {
   uint64_t seed = 1;
   int window = 1;
   int step_limit = kGridStepLimit;
+  double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
 };
 
 // Called with the episodes of one shard, in order, when it has ended; shards come in order too.

@@ -96,46 +96,12 @@ void Imitation::add_trajectories(TrajectoryStream& stream) {
   if (model_.window < 0) model_.window = stream.window();
 }
 
-void Imitation::score(const Minibatch& batch, float* scores) {
-  std::vector<std::pair<int, int>> pairs;
-  std::vector<int> number(size_t(world_.envs()) * world_.task_count(), -1), pair(batch.size());
-  for (int i = 0; i < batch.size(); ++i) {
-    int& n = number[world_.pair_number(batch.env[i], batch.task[i])];
-    if (n < 0) {
-      n = int(pairs.size());
-      pairs.emplace_back(batch.env[i], batch.task[i]);
-    }
-    pair[i] = n;
-  }
-  model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), pairs);
-  constexpr int kUnit = Policy<float>::kInferenceUnit;
-  parallel_.run(shard_count(batch.size(), kUnit), [&](int shard, int thread) {
-    const Range range = shard_range(batch.size(), kUnit, shard);
-    model_.policy->infer(thread, range.size(), batch.pictures.data() + size_t(range.begin) * kGridCells * kHistory, pair.data() + range.begin,
-                         scores + size_t(range.begin) * kGridActions);
-  });
-}
-
-void Imitation::draw_hard() {
-  const int count = int(std::ceil(options_.candidates * options_.batch_states));
-  running_.draw(memory_, parallel_, count, model_.window, model_.updates, candidates_);
-  float* scores = logits_.grow(size_t(count) * kGridActions);
-  score(candidates_, scores);
-  greedy_.resize(count);
-  for (int i = 0; i < count; ++i) greedy_[i] = argmax(scores + size_t(i) * kGridActions, kGridActions);
-  const Random random(model_.seed, Purpose::kBatch, 0, uint64_t(model_.updates));
-  take_steps(candidates_, pick_hard(candidates_, scores, options_.hard_options(model_.updates, total_updates_), random), batch_);
-  running_.advance(memory_, greedy_, model_.updates);
-}
-
 bool Imitation::update(TrajectoryStream& stream) {
   add_trajectories(stream);
   if (memory_.size() == 0) return false;
-  const bool single_steps = options_.batch_states > 0, hard = options_.candidates > 0;
+  const bool single_steps = options_.batch_states > 0;
   running_.set_options(options_.running_options(model_.updates, total_updates_));
-  if (single_steps && hard)
-    draw_hard();
-  else if (single_steps)
+  if (single_steps)
     running_.draw(memory_, parallel_, int(options_.batch_states), model_.window, model_.updates, batch_);
   else
     TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed, model_.updates, batch_);
@@ -165,7 +131,7 @@ bool Imitation::update(TrajectoryStream& stream) {
     ++kind_count_[kind];
     kind_right_[kind] += greedy_[i] == batch_.label[i];
   }
-  if (single_steps && !hard) running_.advance(memory_, greedy_, model_.updates);
+  if (single_steps) running_.advance(memory_, greedy_, model_.updates);
   ++model_.updates;
   model_.states += n;
   ++reported_updates_;
@@ -215,7 +181,7 @@ RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
     for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
     model_.policy->prepare_inference(parallel_, best_parameters().data(), best_statistics().data(), pairs);
     PairResult sum;
-    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, {model_.seed, model_.window, kGridStepLimit}))
+    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, {model_.seed, model_.window, kGridStepLimit, kTemperature}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;

@@ -40,7 +40,7 @@ class Imitation {
 
   // Means since the last call: losses, accuracies, learning rate. Times are the caller's.
   RunLogRow take_report();
-  // Greedy success on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones at every call. NaN where there
+  // Success, at kTemperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones at every call. NaN where there
   // are no such pairs.
   RunLogRow::Evaluation evaluate_sample(int episodes);
 
@@ -48,10 +48,6 @@ class Imitation {
 
  private:
   void add_trajectories(TrajectoryStream& stream);
-  // Lets the running episodes make a step each, by the learner's scores, and takes the hard ones into the minibatch.
-  void draw_hard();
-  // Scores of steps with the running statistics, [batch.size(), kGridActions].
-  void score(const Minibatch& batch, float* scores);
   // What is evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const { return options_.averaging > 0 ? average_statistics_ : model_.statistics; }
@@ -63,7 +59,7 @@ class Imitation {
   ReplayMemory memory_;
   RunningDraw running_;
   Buffer<float> gradient_, first_moment_, second_moment_, average_, average_statistics_, logits_;
-  Minibatch batch_, candidates_;
+  Minibatch batch_;
   std::vector<int> greedy_;
   int64_t total_updates_ = 0;
   uint64_t stream_lines_ = 0, stream_hash_ = Hash().value();

@@ -31,13 +31,8 @@ constexpr Hyper kHypers[] = {
     {"running", &O::running, 1, 1e7, true, "episodes that run side by side"},
     {"balance", &O::balance, 0.001, 1, false, "probability of taking a step that is not on a treasure"},
     {"balance-final", &O::balance_final, 0, 1, false, "what --balance moves to by the run's end; 0: it stays"},
-    {"candidates", &O::candidates, 0, 64, false, "steps looked at for each step taken, the harder ones; 0: taken unseen"},
-    {"ease", &O::ease, 0, 1, false, "weight of a step that the policy gets right, beside the probability of error"},
-    {"roll-in", &O::roll_in, 0, 1, false, "probability, behind a taken step, that the learner's own greedy moves take over"},
-    {"roll-length", &O::roll_length, 1, 1000, false, "how many moves the learner then makes in the mean; all these steps are taken"},
-    {"roll-in-final", &O::roll_in_final, 0, 1, false, "what --roll-in moves to by the run's end; 0: it stays"},
+    {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
-    {"probe", &O::probe, 0, 1, false, "probability that the reward of a random action is learned, not of the one taken"},
     {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
     {"roll-limit", &O::roll_limit, 1, kGridStepLimit, true, "steps after which a running episode is given up"},
     {"lr", &O::learning_rate, 0, 1, false, "learning rate of Adam", "The optimiser"},
@@ -48,7 +43,6 @@ constexpr Hyper kHypers[] = {
     {"beta2", &O::beta2, 0, 0.9999999, false, "decay of Adam's second moment"},
     {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
     {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
-    {"decoupled-decay", &O::decoupled_decay, 0, 100, false, "AdamW: parameters shrink by this times the learning rate"},
     {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
     {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
     {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
@@ -79,22 +73,10 @@ std::string expectation(const Hyper& hyper) {
 
 }  // namespace
 
-namespace {
-
-// From `begin` in a straight line to `end`, or constant where that is 0.
-double moving(double begin, double end, int64_t update, int64_t total) {
-  return end == 0 ? begin : begin + (end - begin) * std::min(1.0, double(update) / std::max<double>(1, double(total) - 1));
-}
-
-}  // namespace
-
-HardOptions O::hard_options(int64_t update, int64_t total) const {
-  return {int(batch_states), moving(balance, balance_final, update, total), ease};
-}
-
 RunningOptions O::running_options(int64_t update, int64_t total) const {
-  const double taken = candidates > 0 ? 1 : moving(balance, balance_final, update, total);
-  return {int(running), taken, moving(roll_in, roll_in_final, update, total), roll_length, roll_noise, fresh_starts != 0, int(roll_limit), probe};
+  const double done = std::min(1.0, double(update) / std::max<double>(1, double(total) - 1));
+  const double now = balance_final == 0 ? balance : balance + (balance_final - balance) * done;
+  return {int(running), now, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
 }
 
 PolicyShape O::shape(const GridSet& world) const {
@@ -128,14 +110,15 @@ ImitationOptions recipe(const std::string& name) {
   if (name != "fast") fail(Exit::kUsage, "unknown recipe ", quoted(name), ", expected fast or paper");
   options.batch_states = 512;
   options.fill = 2000;
-  options.balance = 0.2;
+  options.balance = 0.1;
+  options.balance_final = 0.3;
   options.roll_in = 0.5;
   options.roll_noise = 0.1;
   options.fresh_starts = 1;
   options.roll_limit = 120;
+  options.learning_rate = 0.002;
   options.cosine = 1;
   options.warm_up = 200;
-  options.weight_decay = 1e-4;
   options.task_loss = 1;
   options.embedding_sd = 1;
   return options;
@@ -170,7 +153,7 @@ ImitationOptions RecipeOptions::result() const {
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
   if (options.batch_states == 0)
-    for (const char* name : {"balance", "balance-final", "candidates", "ease", "roll-in", "roll-in-final", "roll-length", "roll-noise", "probe", "fresh-starts", "roll-limit", "running"})
+    for (const char* name : {"balance", "balance-final", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
   return options;
 }

@@ -17,13 +17,10 @@ struct ImitationOptions {
   double memory = 20000;        // trajectories kept
   double read = 1;              // trajectories read before an update
   double fill = 1;              // trajectories read before the first update
-  double running = 8192, balance = 1, roll_in = 0, roll_length = 1, roll_noise = 0, fresh_starts = 0, roll_limit = 300;
-  double balance_final = 0, roll_in_final = 0;  // what they move to, in a straight line, by the run's end; 0: they stay
-  double probe = 0;             // probability that the reward of a random action is predicted, not of the one taken
-  double candidates = 0, ease = 0.05;  // steps looked at for each step taken, and the weight of those that the learner knows
+  double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = 300;
+  double balance_final = 0;     // what balance moves to, in a straight line, by the run's end; 0: it stays
   // The optimiser.
   double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0.001;
-  double decoupled_decay = 0;
   double averaging = 0;         // decay of the averaged weights; 0: none
   // The losses.
   double reward_loss = 0.01, env_loss = 0.1, task_loss = 0.001;
@@ -34,9 +31,8 @@ struct ImitationOptions {
   LossWeights losses() const { return {reward_loss, env_loss, task_loss}; }
   // As they are at update `update` (from 0) of `total`.
   RunningOptions running_options(int64_t update, int64_t total) const;
-  HardOptions hard_options(int64_t update, int64_t total) const;
   PolicyShape shape(const GridSet& world) const;
-  AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay, decoupled_decay}; }
+  AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay}; }
   // Learning rate of update `update` (from 0) of `total`: linear warm-up, then constant or half a cosine down to final_rate.
   double rate(int64_t update, int64_t total) const;
 };

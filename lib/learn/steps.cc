@@ -1,9 +1,7 @@
 #include "learn/steps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
-#include <functional>
 
 #include "base/error.h"
 
@@ -30,41 +28,6 @@ void Minibatch::resize(int size) {
   taken.resize(size);
   reward.resize(size);
   kind.resize(size);
-}
-
-std::vector<int> pick_hard(const Minibatch& candidates, const float* scores, const HardOptions& options, Random random) {
-  // Efraimidis and Spirakis (2006): the largest of u^(1 / weight), u uniform, are such a draw. Compared as log(u) / weight.
-  std::vector<std::pair<double, int>> keys(candidates.size());
-  for (int i = 0; i < candidates.size(); ++i) {
-    const float* score = scores + size_t(i) * kGridActions;
-    const float top = *std::max_element(score, score + kGridActions);
-    double sum = 0;
-    for (int a = 0; a < kGridActions; ++a) sum += std::exp(double(score[a] - top));
-    const double right = std::exp(double(score[candidates.label[i]] - top)) / sum;
-    const bool treasure = candidates.kind[i] == StepKind::kPick || candidates.kind[i] == StepKind::kWalkOn;
-    const double weight = (treasure ? 1 : options.balance) * (options.ease + 1 - right);
-    keys[i] = {std::log(1 - random.uniform()) / std::max(weight, 1e-9), i};
-  }
-  const int count = std::min(options.count, candidates.size());
-  std::partial_sort(keys.begin(), keys.begin() + count, keys.end(), std::greater<>());
-  std::vector<int> chosen(count);
-  for (int i = 0; i < count; ++i) chosen[i] = keys[i].second;
-  std::sort(chosen.begin(), chosen.end());
-  return chosen;
-}
-
-void take_steps(const Minibatch& candidates, const std::vector<int>& chosen, Minibatch& to) {
-  to.resize(int(chosen.size()));
-  for (size_t i = 0; i < chosen.size(); ++i) {
-    const int from = chosen[i];
-    std::copy_n(candidates.pictures.data() + from * kPicture, kPicture, to.pictures.data() + i * kPicture);
-    to.env[i] = candidates.env[from];
-    to.task[i] = candidates.task[from];
-    to.label[i] = candidates.label[from];
-    to.taken[i] = candidates.taken[from];
-    to.reward[i] = candidates.reward[from];
-    to.kind[i] = candidates.kind[from];
-  }
 }
 
 void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,
@@ -102,7 +65,7 @@ void RunningDraw::restart(const ReplayMemory& memory, Running& running, uint32_t
   const uint32_t place = random.below(uint32_t(memory.size()));
   const GridEpisode& episode = memory[place];
   const uint32_t restarts = running.restarts + 1;
-  running = {episode.pair, episode.start, {}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started, false};
+  running = {episode.pair, episode.start, {}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started};
   if (options_.fresh_starts) running.state = grid_reset(world_->maze(episode.pair.env), random);
   running.history.push(running.state.now);
 }
@@ -160,19 +123,18 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
       while (true) {
         label_and_move(memory, running, label, move);
         if (options_.noise > 0 && random.uniform() < options_.noise) move = int(random.below(kPick));
-        if (running.own || treasure_under_agent(running.state.now) >= 0 || random.uniform() < options_.balance) break;
+        if (treasure_under_agent(running.state.now) >= 0 || random.uniform() < options_.balance) break;
         step(memory, running, number, move);
       }
       moves_[i] = move;
       batch.env[i] = running.pair.env;
       batch.task[i] = running.pair.task;
       batch.label[i] = label;
-      const int tried = options_.probe > 0 && random.uniform() < options_.probe ? int(random.below(kGridActions)) : move;
-      batch.taken[i] = tried;
+      batch.taken[i] = move;
       batch.kind[i] = step_kind(running.state, label);
       GridState after = running.state;
       const Maze& maze = world_->maze(running.pair.env);
-      batch.reward[i] = float(grid_step(maze, world_->tasks()[running.pair.task], after, tried).reward_cents) / 100;
+      batch.reward[i] = float(grid_step(maze, world_->tasks()[running.pair.task], after, move).reward_cents) / 100;
       draw_history(maze, running.history, window, batch.pictures.data() + size_t(i) * kPicture);
     }
   });
@@ -181,10 +143,9 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
 void RunningDraw::advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update) {
   for (size_t i = 0; i < drawn_.size(); ++i) {
     const uint32_t number = drawn_[i];
-    Running& running = running_[number];
     Random random(seed_, Purpose::kOwnMove, number, uint64_t(update));
-    running.own = random.uniform() < (running.own ? 1 - 1 / options_.roll_length : options_.roll_in);
-    step(memory, running, number, running.own ? greedy[i] : moves_[i]);
+    const bool own = options_.roll_in > 0 && random.uniform() < options_.roll_in;
+    step(memory, running_[number], number, own ? greedy[i] : moves_[i]);
   }
 }
 
@@ -194,7 +155,7 @@ void RunningDraw::save(SafeTensors& file, const std::string& prefix) const {
   std::vector<int64_t> words;
   for (const Running& r : running_) {
     words.insert(words.end(), {r.pair.env, r.pair.task, r.state.picked, r.state.steps, int64_t(r.serial), r.place, r.restarts, r.following,
-                               r.started, r.own, r.history.count});
+                               r.started, r.history.count});
     const auto add_frame = [&](const GridFrame& frame) {
       words.push_back(frame.agent);
       for (const uint8_t cell : frame.treasures) words.push_back(cell);
@@ -208,7 +169,7 @@ void RunningDraw::save(SafeTensors& file, const std::string& prefix) const {
 }
 
 void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const ReplayMemory& memory) {
-  constexpr size_t kWords = 11 + (1 + kHistory) * (1 + kTreasures);
+  constexpr size_t kWords = 10 + (1 + kHistory) * (1 + kTreasures);
   const std::vector<int64_t> words = file.get<int64_t>(prefix + "running");
   int64_t next = 0;
   file.get(prefix + "next", &next, 1);
@@ -232,7 +193,6 @@ void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const
     r.restarts = uint32_t(take(0, UINT32_MAX));
     r.following = take(0, 1) != 0;
     r.started = take(0, 1) != 0;
-    r.own = take(0, 1) != 0;
     r.history.count = uint8_t(take(0, kHistory));
     const auto take_frame = [&](GridFrame& frame) {
       frame.agent = uint8_t(take(0, 255));

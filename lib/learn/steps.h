@@ -1,16 +1,14 @@
 // The steps of a minibatch, drawn from the replay memory in one of two ways.
 //
 // TrajectoryDraw is Algorithm 1: whole trajectories, uniformly, all their steps.
-// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn. Some follow
-// a trajectory of the memory, or are driven off it by random moves, where the planner then gives the label: their steps on which the agent
-// stands on a treasure are always taken, others with a probability. Now and then the learner's greedy moves take over for a while, and
-// every step is taken. Or all steps of all episodes are candidates, and the learner's scores tell which are worth learning from (pick_hard).
+// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn; one starts as
+// a trajectory of the memory and follows it, or is driven off it by random moves and the learner's own greedy moves, where the
+// planner then gives the label. Steps on which the agent stands on a treasure are always taken, others with a probability.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "base/parallel.h"
-#include "base/random.h"
 #include "learn/memory.h"
 #include "world/view.h"
 
@@ -38,25 +36,13 @@ class TrajectoryDraw {
                    Minibatch& batch);
 };
 
-// `count` of the candidates, in ascending order, drawn without replacement by weight: balance (1 where the agent stands on a treasure) times
-// (ease + the probability that the learner gives to actions that are not the label). scores [candidates.size(), kGridActions] are its logits.
-struct HardOptions {
-  int count = 0;
-  double balance = 1, ease = 0;
-};
-std::vector<int> pick_hard(const Minibatch& candidates, const float* scores, const HardOptions& options, Random random);
-// to = the chosen steps.
-void take_steps(const Minibatch& candidates, const std::vector<int>& chosen, Minibatch& to);
-
 struct RunningOptions {
   int episodes = 8192;      // that run side by side
   double balance = 1;       // probability of taking a step that is not on a treasure
-  double roll_in = 0;       // probability, behind a taken step, that the learner's own greedy moves take over
-  double roll_length = 1;   // how many of them, in the mean; all these steps are taken
+  double roll_in = 0;       // probability of the learner's own greedy move behind a taken step
   double noise = 0;         // probability of a random move otherwise
   bool fresh_starts = false;  // agent and treasures are placed anew; the memory then gives the pair alone
   int step_limit = kGridStepLimit;
-  double probe = 0;         // probability that Minibatch::taken is any action, with the reward that it would have had
 };
 
 class RunningDraw {
@@ -84,7 +70,6 @@ class RunningDraw {
     uint32_t restarts;
     bool following;    // actions so far are the trajectory's
     bool started;
-    bool own;          // goes the learner's way
   };
   void restart(const ReplayMemory& memory, Running& running, uint32_t number);
   // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.

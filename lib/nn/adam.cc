@@ -11,7 +11,6 @@ void adam_step(Parallel& parallel, const AdamOptions& options, int64_t step, siz
   factors.beta1 = T(options.beta1);
   factors.beta2 = T(options.beta2);
   factors.decay = T(options.weight_decay);
-  factors.shrink = T(1 - options.learning_rate * options.decoupled_decay);
   factors.rate = T(options.learning_rate / (1 - std::pow(options.beta1, double(step))));
   factors.correction = T(1 / std::sqrt(1 - std::pow(options.beta2, double(step))));
   factors.epsilon = T(options.epsilon);

@@ -9,7 +9,6 @@ namespace synpo {
 
 struct AdamOptions {
   double learning_rate = 0.001, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0.001;
-  double decoupled_decay = 0;  // AdamW (Loshchilov and Hutter 2019): parameters shrink by the factor 1 - learning_rate * decoupled_decay
 };
 
 // One step; `step` counts from 1. `m` and `v` are the moments. With decay averaging in [0, 1), `average` (may be null) moves towards the
