@@ -1,8 +1,7 @@
-// synpo-matrix filter and wide: some of the rows; and the matrix laid out for other programs.
+// synpo-matrix filter: some of the rows.
 #include <stdexcept>
 
 #include "base/error.h"
-#include "draw/heatmap.h"
 #include "format/pairs.h"
 #include "stats/filter.h"
 #include "synpo-matrix.h"
@@ -60,30 +59,6 @@ int matrix_filter(int argc, char** argv) {
   const Matrix left = filter_rows(matrix, filter);
   Output output(output_path);
   write_matrix(output, left);
-  output.finish();
-  return 0;
-}
-
-int matrix_wide(int argc, char** argv) {
-  std::string method, measure = "success", output_path = "-";
-  Options options("synpo-matrix wide", "[OPTION]... [MATRIX]...",
-                  "A line per task and a column per environment, for gnuplot, R and spreadsheets; rates from 0 to 1.");
-  options.text(0, "method", "NAME", "only the rows of this method", method)
-      .call(0, "measure", "NAME", "success, reward, length, wrong, timeouts; episodes, successes, seen [success]",
-            [&](const std::string& name) {
-              if (name != "episodes" && name != "successes" && name != "seen") find_measure(name);
-              measure = name;
-            })
-      .text('o', "output", "FILE", "where the table goes", output_path);
-  Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles));
-  if (!method.empty()) {
-    RowFilter filter;
-    filter.methods = {method};
-    matrix = filter_rows(matrix, filter);
-  }
-  const HeatTable table = pool_matrix(matrix);
-  Output output(output_path);
-  write_wide(output, matrix, table.envs, table.tasks, measure);
   output.finish();
   return 0;
 }

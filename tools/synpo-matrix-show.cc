@@ -10,7 +10,7 @@ namespace synpo {
 int matrix_show(int argc, char** argv) {
   std::string method, scheme = "safe", when = "auto", by = "seen", output_path = "-";
   Options options("synpo-matrix show", "[OPTION]... [MATRIX]...",
-                  "The matrix in the terminal, as coloured blocks where it has colour: tasks down, environments across, rates in per cent.");
+                  "The matrix in the terminal, in coloured blocks where it has colour: tasks down, environments across, per cent.");
   options.text(0, "method", "NAME", "only the rows of this method", method)
       .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]", [&](const std::string& name) { scheme = find_scheme(name).name; })
       .call(0, "by", "KIND", "tell apart seen from unseen pairs, or parts: seen or part [seen]",

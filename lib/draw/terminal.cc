@@ -21,8 +21,8 @@ std::string variable(const char* name) {
 int cube_index(Rgb colour) {
   const auto level = [](int value) {
     constexpr int levels[] = {0, 95, 135, 175, 215, 255};
-    return int(std::min_element(std::begin(levels), std::end(levels), [&](int a, int b) { return std::abs(a - value) < std::abs(b - value); }) -
-               std::begin(levels));
+    const auto nearer = [&](int a, int b) { return std::abs(a - value) < std::abs(b - value); };
+    return int(std::min_element(std::begin(levels), std::end(levels), nearer) - std::begin(levels));
   };
   return 16 + 36 * level(colour.r) + 6 * level(colour.g) + level(colour.b);
 }
@@ -111,7 +111,7 @@ std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, Termin
   size_t cell = 4;
   while (coloured && width > 0 && cell > 1 && label + 1 + cell * table.envs.size() > size_t(width)) --cell;
   std::string text = table.caption.empty() ? "" : table.caption + '\n';
-  text += head(table, label + 1, cell);
+  text += head(table, coloured ? label + 1 : label, cell);  // names above the numbers, not the marks
   for (size_t task = 0; task < table.tasks.size(); ++task) {
     text += table.tasks[task] + std::string(label + 1 - text_width(table.tasks[task]), ' ');
     std::string line;

@@ -78,17 +78,6 @@ Interval bootstrap_mean(const PairValues& pairs, size_t runs, const BootstrapPla
   return percentile_interval(std::move(samples));
 }
 
-double mean_difference(const PairValues& a, const PairValues& b) {
-  const auto mean = [](const std::vector<RunValue>& values) {
-    double sum = 0;
-    for (const RunValue& v : values) sum += v.value;
-    return sum / double(values.size());
-  };
-  double sum = 0;
-  for (size_t p = 0; p < a.size(); ++p) sum += mean(b[p]) - mean(a[p]);
-  return a.empty() ? kNone : sum / double(a.size());
-}
-
 Interval bootstrap_difference(const PairValues& a, size_t runs_a, const PairValues& b, size_t runs_b, bool matched,
                               const BootstrapPlan& plan) {
   std::vector<double> samples;

@@ -34,7 +34,5 @@ Interval bootstrap_mean(const PairValues& pairs, size_t runs, const BootstrapPla
 // together for a and b. So are runs when `matched`, run i of a with run i of b; otherwise each side draws its own.
 Interval bootstrap_difference(const PairValues& a, size_t runs_a, const PairValues& b, size_t runs_b, bool matched,
                               const BootstrapPlan& plan);
-// What it is the interval of.
-double mean_difference(const PairValues& a, const PairValues& b);
 
 }  // namespace synpo

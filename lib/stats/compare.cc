@@ -16,14 +16,46 @@ std::string start_key(const MatrixRow& row) {
   return concat(row.env, '\t', row.task, '\t', row.eval_seed, '\t', row.first_episode, '\t', row.episodes);
 }
 
-using Keys = std::unordered_set<std::string>;
-template <class Key>
-Keys keys_of(const Matrix& matrix, Key key) {
-  Keys keys;
-  for (const MatrixRow& row : matrix.rows) keys.insert(key(row));
-  return keys;
+// What a side has: pairs, pairs with their seen, and rows by their start states.
+struct Side {
+  explicit Side(const Matrix& matrix) {
+    for (const MatrixRow& row : matrix.rows) {
+      pairs.insert(pair_key(row));
+      seen.insert(pair_key(row) + (row.seen ? "\t1" : "\t0"));
+      starts.insert(start_key(row));
+    }
+  }
+  // Where a row of the other side that cannot be compared with this one is counted; null when it can.
+  int64_t Comparison::*lacks(const MatrixRow& row, bool any_start) const {
+    if (!pairs.contains(pair_key(row))) return &Comparison::only_one;
+    if (!seen.contains(pair_key(row) + (row.seen ? "\t1" : "\t0"))) return &Comparison::other_seen;
+    return any_start || starts.contains(start_key(row)) ? nullptr : &Comparison::other_starts;
+  }
+  std::unordered_set<std::string> pairs, seen, starts;
+};
+
+// The rows of each that can be compared with the other's; pairs that lose all of theirs are counted in `result`.
+std::pair<Matrix, Matrix> common_rows(const Matrix& a, const Matrix& b, bool any_start, Comparison& result) {
+  std::unordered_map<std::string, int64_t Comparison::*> left_out;
+  std::unordered_set<std::string> kept;
+  const auto choose = [&](const Matrix& matrix, const Side& other) {
+    Matrix part;
+    part.has_part = matrix.has_part;
+    for (const MatrixRow& row : matrix.rows) {
+      if (const auto reason = other.lacks(row, any_start)) {
+        left_out.try_emplace(pair_key(row), reason);
+      } else {
+        kept.insert(pair_key(row));
+        part.rows.push_back(row);
+      }
+    }
+    return part;
+  };
+  std::pair<Matrix, Matrix> common{choose(a, Side(b)), choose(b, Side(a))};
+  for (const auto& [pair, reason] : left_out)
+    if (!kept.contains(pair)) ++(result.*reason);
+  return common;
 }
-std::string seen_key(const MatrixRow& row) { return concat(row.env, '\t', row.task, '\t', row.seen); }
 
 Group only_group(const MatrixSource& source) {
   std::vector<Group> groups = gather(source.matrix);
@@ -50,21 +82,25 @@ SubsetChange change_of(const std::string& name, const Paired& paired, size_t run
   SubsetChange subset;
   subset.name = name;
   PairValues a, b;
-  double sum_a = 0;
+  double sum_a = 0, sum_b = 0;
+  const auto mean = [](const std::vector<RunValue>& values) {
+    double sum = 0;
+    for (const RunValue& value : values) sum += value.value;
+    return sum / double(values.size());
+  };
   for (size_t p = 0; p < paired.pairs.size(); ++p) {
     const PairChange& pair = paired.pairs[p];
     if (!belongs({pair.env, pair.task, pair.seen, pair.part, {}}, name)) continue;
     a.push_back(paired.a[p]);
     b.push_back(paired.b[p]);
-    double sum = 0;
-    for (const RunValue& value : a.back()) sum += value.value;
-    sum_a += sum / double(a.back().size());
+    sum_a += mean(a.back());
+    sum_b += mean(b.back());
     ++(pair.change() > 0 ? subset.better : pair.change() < 0 ? subset.worse : subset.alike);
   }
   subset.pairs = int64_t(a.size());
-  subset.change = mean_difference(a, b);
   subset.mean_a = sum_a / double(a.size());
-  subset.mean_b = subset.mean_a + subset.change;
+  subset.mean_b = sum_b / double(b.size());
+  subset.change = subset.mean_b - subset.mean_a;
   subset.interval = bootstrap_difference(a, runs_a, b, runs_b, matched, plan);
   return subset;
 }
@@ -75,37 +111,11 @@ Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start,
   const Group all_a = only_group(a), all_b = only_group(b);
   if (all_a.world != all_b.world)
     fail(Exit::kData, b.name, ": found world ", quoted(all_b.world), ", expected ", quoted(all_a.world), " as in ", a.name);
-  const Keys pairs_a = keys_of(a.matrix, pair_key), pairs_b = keys_of(b.matrix, pair_key);
-  const Keys seen_a = keys_of(a.matrix, seen_key), seen_b = keys_of(b.matrix, seen_key);
-  const Keys starts_a = keys_of(a.matrix, start_key), starts_b = keys_of(b.matrix, start_key);
-
   Comparison result;
-  std::unordered_map<std::string, const char*> left_out;  // a pair, and why
-  std::unordered_set<std::string> kept;
-  const auto common = [&](const Matrix& matrix, const Keys& other_pairs, const Keys& other_seen, const Keys& other_starts) {
-    Matrix part;
-    part.has_part = matrix.has_part;
-    for (const MatrixRow& row : matrix.rows) {
-      const char* why = !other_pairs.contains(pair_key(row))                  ? "one"
-                        : !other_seen.contains(seen_key(row))                 ? "seen"
-                        : any_start || other_starts.contains(start_key(row)) ? nullptr
-                                                                              : "starts";
-      if (why) {
-        left_out.try_emplace(pair_key(row), why);
-      } else {
-        kept.insert(pair_key(row));
-        part.rows.push_back(row);
-      }
-    }
-    return part;
-  };
-  const Matrix part_a = common(a.matrix, pairs_b, seen_b, starts_b), part_b = common(b.matrix, pairs_a, seen_a, starts_a);
-  for (const auto& [pair, why] : left_out) {
-    if (kept.contains(pair)) continue;
-    ++(*why == 'o' ? result.only_one : why[1] == 'e' ? result.other_seen : result.other_starts);
-  }
+  const auto [part_a, part_b] = common_rows(a.matrix, b.matrix, any_start, result);
   if (part_a.rows.empty() || part_b.rows.empty())
-    fail(Exit::kData, a.name, " and ", b.name, " have no pair with the same start states (eval_seed, first_episode, episodes) and the same seen",
+    fail(Exit::kData, a.name, " and ", b.name,
+         " have no pair with the same start states (eval_seed, first_episode, episodes) and the same seen",
          any_start ? "" : "; --any-start compares other start states, too");
 
   const Group group_a = only_group({a.name, part_a}), group_b = only_group({b.name, part_b});

@@ -1,5 +1,6 @@
 #include "stats/filter.h"
 
+#include <algorithm>
 #include <unordered_map>
 
 #include "base/error.h"
@@ -47,6 +48,12 @@ Matrix filter_rows(const Matrix& matrix, const RowFilter& filter) {
     if (filter.fits(row) != filter.inverted) left.rows.push_back(row);
   if (left.rows.empty()) fail(Exit::kData, "no row is left of ", matrix.rows.size(), ", and a matrix has at least one");
   return left;
+}
+
+bool is_wide_measure(const std::string& name) {
+  const auto& kinds = measure_kinds();
+  return name == "episodes" || name == "successes" || name == "seen" ||
+         std::any_of(kinds.begin(), kinds.end(), [&](const MeasureKind& kind) { return name == kind.name; });
 }
 
 void write_wide(Output& output, const Matrix& matrix, const std::vector<std::string>& envs, const std::vector<std::string>& tasks,

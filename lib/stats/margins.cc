@@ -63,7 +63,8 @@ std::string margins_text(const std::vector<GroupMargins>& groups, Axis axis, siz
   std::string text;
   for (const GroupMargins& group : groups) {
     std::vector<std::vector<std::string>> rows = {
-        {tasks ? "task" : "env", tasks ? "worst env" : "worst task", "%", "pairs", "k of n", "success %", "95 % interval", "seen %", "unseen %"}};
+        {tasks ? "task" : "env", tasks ? "worst env" : "worst task", "%", "pairs", "k of n", "success %", "95 % interval", "seen %",
+         "unseen %"}};
     for (size_t i = 0; i < group.margins.size() && i < most; ++i) {
       const Margin& m = group.margins[i];
       const auto rate = [](const Tally& tally) { return percent(success().value(tally)); };

@@ -101,7 +101,7 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
   if (spread) words += "a +- b: mean and standard deviation over runs (divisor: runs - 1); alike: all runs have this value.\n";
   if (!brief) words += "IQM: interquartile mean of the values of all runs and pairs.\n";
   if (resampled)
-    words += concat("Interval: bootstrap over runs, ", table.plan.pair_by_pair ? "drawn in each pair on its own" : "drawn whole", ", ",
+    words += concat("Interval: bootstrap over runs, drawn ", table.plan.pair_by_pair ? "in each pair on its own" : "whole", ", ",
                     table.plan.samples, " samples, seed ", table.plan.seed, few ? "; of so few runs it is too narrow.\n" : ".\n");
   if (starred) words += "w: Wilson's interval for k of n: one run, or runs all alike, tell nothing of other runs.\n";
   if (format == TableFormat::kMarkdown)
@@ -117,8 +117,8 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
 
 void write_method_table(Output& output, const MethodTable& table) {
   TsvWriter writer(output);
-  for (const char* name : {"world", "window", "method", "subset", "measure", "runs", "pairs", "episodes", "mean", "sd", "iqm", "low", "high",
-                           "interval"})
+  for (const char* name : {"world", "window", "method", "subset", "measure", "runs", "pairs", "episodes", "mean", "sd", "iqm", "low",
+                           "high", "interval"})
     writer.text(name);
   writer.end_row();
   for (const TableLine& line : table.lines) {

@@ -44,7 +44,7 @@ std::string summary_text(const std::vector<GroupSummary>& groups) {
   }
   text += "k of n: successes of episodes, all pairs and runs together; interval: Wilson's, for k of n.\n";
   text += "reward and length: per episode; wrong and timeouts: share of the episodes.\n";
-  if (any_several) text += "a +- b: mean and standard deviation (divisor: runs - 1) of the runs' own values.\n";
+  if (any_several) text += "a +- b: mean and standard deviation (divisor: runs - 1) of the runs' own values; alike: all have this value.\n";
   return text;
 }
 

@@ -67,12 +67,11 @@ std::string percent(double rate, int digits) {
   return decimal(rate * 100, digits);
 }
 
-std::string percent_range(const Interval& interval) { return percent(interval.low) + " to " + percent(interval.high); }
+std::string percent_range(const Interval& interval) { return range_text(interval, find_measure("success")); }
 
 std::string range_text(const Interval& interval, const MeasureKind& kind) {
   if (std::isnan(interval.low)) return "-";
-  if (kind.rate) return percent_range(interval);
-  return decimal(interval.low, kind.digits) + " to " + decimal(interval.high, kind.digits);
+  return decimal(interval.low * kind.scale(), kind.digits) + " to " + decimal(interval.high * kind.scale(), kind.digits);
 }
 
 std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind) {

@@ -14,7 +14,7 @@ enum class TableFormat { kText, kMarkdown, kLatex };
 std::string decimal(double value, int digits);
 // A rate in per cent. 100.0 and 0.0 stand there only where all or none succeeded: 0.9999 is 99.9.
 std::string percent(double rate, int digits = 1);
-// "81.2 to 86.0"
+// "81.2 to 86.0"; ends are rounded like any number. "-" where there is no interval.
 std::string percent_range(const Interval& interval);
 std::string range_text(const Interval& interval, const MeasureKind& kind);
 
