@@ -53,15 +53,15 @@ std::vector<Group> gather(const Matrix& matrix) {
   std::unordered_map<std::string, size_t> group_at, pair_at;
   std::unordered_map<std::string, Place> run_at;
   for (const MatrixRow& row : matrix.rows) {
-    const std::string group_key = concat(row.world, '\t', row.window, '\t', row.method), key = run_key(row);
+    const std::string group_key = row.world + '\t' + std::to_string(row.window) + '\t' + row.method;
     const auto [at_group, fresh_group] = group_at.try_emplace(group_key, groups.size());
     if (fresh_group) groups.push_back({row.world, row.method, row.window, matrix.has_part, {}});
     Group& group = groups[at_group->second];
-    const std::string run_name = group_key + '\n' + key;
+    const std::string run_name = group_key + '\n' + run_key(row);
     const auto [at_run, fresh_run] = run_at.try_emplace(run_name, Place{at_group->second, group.runs.size()});
     if (fresh_run) group.runs.push_back({row.seed, row.updates, {}});
     Run& run = group.runs[at_run->second.run];
-    const auto [at_pair, fresh_pair] = pair_at.try_emplace(concat(run_name, '\n', row.env, '\t', row.task), run.pairs.size());
+    const auto [at_pair, fresh_pair] = pair_at.try_emplace(run_name + '\n' + row.env + '\t' + row.task, run.pairs.size());
     if (fresh_pair) run.pairs.push_back({row.env, row.task, row.seen, row.part, {}});
     run.pairs[at_pair->second].tally.add(row);
   }
