@@ -1,57 +1,19 @@
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "base/error.h"
 #include "format/tsv.h"
+#include "stats/runs.h"
 #include "stats/summary.h"
+#include "stats/text_table.h"
 
 namespace synpo {
 namespace {
 
-std::string decimal(double value, int digits) {
-  if (std::isnan(value)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
 // "7.12", with several runs "7.12 +- 0.10".
-std::string cell(const Measure& measure, double scale, int digits, bool several) {
-  if (!several) return decimal(measure.pooled * scale, digits);
-  if (std::isnan(measure.over_runs.sd)) return decimal(measure.over_runs.mean * scale, digits);
-  return decimal(measure.over_runs.mean * scale, digits) + " +- " + decimal(measure.over_runs.sd * scale, digits);
-}
-
-// The first column to the left, the others to the right, two blanks between.
-std::string align(const std::vector<std::vector<std::string>>& rows) {
-  std::vector<size_t> widths;
-  for (const auto& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string text;
-  for (const auto& row : rows) {
-    for (size_t i = 0; i < row.size(); ++i) {
-      const std::string blanks(widths[i] - row[i].size(), ' ');
-      text += i == 0 ? row[i] + blanks : "  " + blanks + row[i];
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-std::string heading(const GroupSummary& group) {
-  std::string text = group.method.empty() ? "unnamed method" : group.method;
-  if (!group.world.empty()) text += concat(" on ", group.world, ", window ", group.window);
-  if (group.most_updates > 0) {
-    text += concat(", ", group.least_updates);
-    if (group.most_updates > group.least_updates) text += concat(" to ", group.most_updates);
-    text += " updates";
-  }
-  text += concat(": ", group.seeds.size(), group.seeds.size() == 1 ? " run (seed" : " runs (seeds");
-  for (size_t i = 0; i < group.seeds.size() && i < 20; ++i) text += concat(' ', group.seeds[i]);
-  return text + (group.seeds.size() > 20 ? " ...)\n" : ")\n");
+std::string cell(const Measure& measure, const char* kind, bool several) {
+  const MeasureKind& shown = find_measure(kind);
+  if (several) return spread_text(measure.over_runs, shown);
+  return shown.rate ? percent(measure.pooled, shown.digits) : decimal(measure.pooled, shown.digits);
 }
 
 }  // namespace
@@ -68,20 +30,21 @@ std::string summary_text(const std::vector<GroupSummary>& groups) {
     for (const SubsetSummary& subset : group.subsets) {
       const bool none = subset.episodes == 0;
       std::vector<std::string> row = {subset.name, std::to_string(subset.pairs), concat(subset.successes, " of ", subset.episodes),
-                                      decimal(subset.success.pooled * 100, 1),
-                                      none ? "-" : decimal(subset.interval.low * 100, 1) + " to " + decimal(subset.interval.high * 100, 1)};
-      if (several) row.push_back(cell(subset.success, 100, 1, true));
-      row.push_back(cell(subset.reward, 1, 2, several));
-      row.push_back(cell(subset.length, 1, 1, several));
-      row.push_back(cell(subset.wrong, 100, 1, several));
-      row.push_back(cell(subset.timeouts, 100, 1, several));
+                                      percent(subset.success.pooled),
+                                      none ? "-" : percent_range(subset.interval)};
+      if (several) row.push_back(cell(subset.success, "success", true));
+      row.push_back(cell(subset.reward, "reward", several));
+      row.push_back(cell(subset.length, "length", several));
+      row.push_back(cell(subset.wrong, "wrong", several));
+      row.push_back(cell(subset.timeouts, "timeouts", several));
       rows.push_back(std::move(row));
     }
-    text += heading(group) + align(rows) + '\n';
+    text += heading(group.method, group.world, group.window, group.least_updates, group.most_updates, group.seeds) + '\n';
+    text += table_text(rows) + '\n';
   }
   text += "k of n: successes of episodes, all pairs and runs together; interval: Wilson's, for k of n.\n";
   text += "reward and length: per episode; wrong and timeouts: share of the episodes.\n";
-  if (any_several) text += "a +- b: mean and standard deviation (divisor: runs - 1) of the runs' own values.\n";
+  if (any_several) text += "a +- b: mean and standard deviation (divisor: runs - 1) of the runs' own values; alike: all have this value.\n";
   return text;
 }
 

@@ -19,6 +19,10 @@ for_writers() {
     "$1" synpo-matrix split
     "$1" synpo-matrix summary m.tsv
     "$1" synpo-matrix merge m.tsv
+    for command in table "compare m.tsv" rows cols show filter wide; do
+        # shellcheck disable=SC2086
+        "$1" synpo-matrix $command m.tsv
+    done
     "$1" synpo-render heatmap m.tsv
     "$1" synpo-render curves run.log
     "$1" synpo-render map

@@ -114,6 +114,26 @@ TEST(Split, SmallerCountsLieInsideLargerOnes) {
   }
 }
 
+// "The seen set at 20 % lies inside the one at 30 %", in every setting and for tables that are far from square.
+TEST(Split, SharesAreNested) {
+  for (uint64_t seed : {1, 2, 3}) {
+    for (const auto& [envs, tasks] : {std::pair(20, 20), std::pair(7, 40), std::pair(100, 30)}) {
+      for (int setting : {1, 2, 3}) {
+        std::set<std::string> before;
+        for (double ratio : {0.05, 0.2, 0.3, 0.36, 1.0}) {
+          SplitPlan p = plan(envs, tasks, -1, seed);
+          p.setting = setting;
+          p.ratio = ratio;
+          const Seen seen(p, setting == 1 ? "" : "P");
+          EXPECT_TRUE(std::includes(seen.pairs.begin(), seen.pairs.end(), before.begin(), before.end())) << ratio;
+          EXPECT_GT(seen.pairs.size(), before.size());
+          before = seen.pairs;
+        }
+      }
+    }
+  }
+}
+
 TEST(Split, SinglePairsAreAlone) {
   for (uint64_t seed = 0; seed < 20; ++seed) {
     SplitPlan p = plan(10, 10, 20, seed);

@@ -1,0 +1,69 @@
+// A success matrix sorted into methods, runs and pairs, and the measures that can be taken of a pair.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "format/matrix.h"
+
+namespace synpo {
+
+// Counts and sums over episodes.
+struct Tally {
+  int64_t episodes = 0, successes = 0, wrong = 0, timeouts = 0, length = 0;
+  double reward = 0;
+  void add(const Tally& other);
+  void add(const MatrixRow& row);
+};
+
+struct PairTally {
+  std::string env, task;
+  bool seen;
+  std::string part;
+  Tally tally;
+  std::string name() const { return env + '\t' + task; }
+};
+
+struct Run {
+  uint64_t seed;
+  int64_t updates;
+  std::vector<PairTally> pairs;  // each once
+};
+
+// The runs of one method in one world with one window.
+struct Group {
+  std::string world, method;
+  int64_t window;
+  bool parts;  // the matrix has the column
+  std::vector<Run> runs;
+  std::vector<uint64_t> seeds() const;
+};
+
+// Groups in the order of their first row, and so with runs and pairs. Rows are taken as they are: merge_matrices first keeps double
+// counting out.
+std::vector<Group> gather(const Matrix& matrix);
+
+// "synpo on gridworld, window 1, 20000 updates: 3 runs (seeds 1 2 3)"
+std::string heading(const Group& group);
+std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates, int64_t most_updates,
+                    const std::vector<uint64_t>& seeds);
+
+// The subsets of pairs that have a name: seen, unseen, all, P, Q, rest.
+bool is_subset(const std::string& name);
+bool belongs(const PairTally& pair, const std::string& subset);
+
+// Something per episode. NaN where the matrix does not say: a column missing in one made by hand is 0 throughout.
+struct MeasureKind {
+  const char* name;
+  double (*value)(const Tally&);
+  bool rate;               // of k in n; shown in per cent
+  int digits;              // behind the point, as shown
+  int64_t (*count)(const Tally&);  // k of a rate
+  double scale() const { return rate ? 100 : 1; }
+};
+// success, reward, length, wrong, timeouts
+const std::vector<MeasureKind>& measure_kinds();
+// Throws std::invalid_argument for another name.
+const MeasureKind& find_measure(const std::string& name);
+
+}  // namespace synpo
