@@ -1,4 +1,4 @@
-// Success of a policy on pairs: greedy, every episode run to its own end.
+// Success of a policy on pairs, every episode run to its own end.
 #pragma once
 #include <functional>
 #include <vector>

@@ -13,6 +13,9 @@
 #include "base/random.h"
 #include "nn/adam.h"
 #include "learn/episode.h"
+#include "learn/recipe.h"
+#include "learn/steps.h"
+#include "nn/gemm.h"
 #include "policy/synpo.h"
 #include "world/gridworld.h"
 #include "world/planner.h"
@@ -68,7 +71,7 @@ double rate(int states, double limit_s, Work&& work) {
   return rates[rates.size() / 2];
 }
 
-double network_rate(bool train, int n, int threads) {
+double network_rate(bool train, int n, int threads, double limit_s = 4) {
   Parallel parallel(threads);
   SynPo<float> policy{PolicyShape()};
   const size_t count = policy.parameters().total();
@@ -79,7 +82,7 @@ double network_rate(bool train, int n, int threads) {
   const RandomBatch data(n);
   int64_t step = 0;
   if (train)
-    return rate(n, 8, [&] {
+    return rate(n, limit_s, [&] {
       policy.step(parallel, data.batch, {0.01, 0.1, 0.1}, parameters.data(), statistics.data(), gradient.data(), logits.data());
       adam_step(parallel, {}, ++step, count, gradient.data(), parameters.data(), m.data(), v.data());
     });
@@ -89,7 +92,7 @@ double network_rate(bool train, int n, int threads) {
   for (int i = 0; i < n; ++i) pair[i] = data.env[i] * 20 + data.task[i];
   policy.prepare_inference(parallel, parameters.data(), statistics.data(), pairs);
   constexpr int kUnit = Policy<float>::kInferenceUnit;
-  return rate(n, 8, [&] {
+  return rate(n, limit_s, [&] {
     parallel.run(shard_count(n, kUnit), [&](int shard, int thread) {
       const Range range = shard_range(n, kUnit, shard);
       policy.infer(thread, range.size(), data.pictures.data() + size_t(range.begin) * kGridCells * kHistory, pair.data() + range.begin,
@@ -145,6 +148,38 @@ double eigen_rate(int threads) {
          }) * kRows * kSide * kSide;
 }
 
+// The same of our own product, the right matrix packed as a weight is.
+double product_rate(int threads) {
+  constexpr int kRows = 512, kSide = 256;
+  Parallel parallel(threads);
+  const std::vector<float> values(kRows * kSide, 0.5f);
+  std::vector<Packed<float>> b(threads);
+  std::vector<std::vector<float>> c(threads, std::vector<float>(kRows * kSide));
+  for (Packed<float>& packed : b) packed.pack(Op::kAsIs, kSide, kSide, values.data(), kSide);
+  constexpr int kRepeats = 64;
+  return rate(threads * kRepeats, 3, [&] {
+           parallel.run(threads, [&](int shard, int) {
+             for (int i = 0; i < kRepeats; ++i) gemm(Op::kAsIs, kRows, values.data(), kSide, b[shard], c[shard].data(), kSide);
+           });
+         }) * kRows * kSide * kSide;
+}
+
+// States a second drawn for training as the fast recipe does it: worlds, planner, replay memory and pictures, without the network.
+double draw_rate(int threads) {
+  const GridSet world = GridSet::open("gridworld");
+  Parallel parallel(threads);
+  const ImitationOptions options = recipe("fast");
+  ReplayMemory memory(1000);
+  for (int i = 0; i < 1000; ++i) memory.add(replay(world, expert_episode(world, {i % 20, i / 20 % 20}, 1, i, 0, 1)));
+  RunningDraw running(world, options.running_options(0, 1), 1);
+  Minibatch batch;
+  int64_t update = 0;
+  return rate(int(options.batch_states), 2, [&] {
+    running.draw(memory, parallel, int(options.batch_states), 1, update, batch);
+    running.advance(memory, batch.label, update++);
+  });
+}
+
 // Multiply-adds that one state's training step executes in matrix products: forward, and twice that backward but for the input's gradient.
 double step_multiply_adds() {
   const PolicyShape shape;
@@ -159,10 +194,19 @@ int rows() {
   const int threads = Parallel().threads();
   row("world_steps_per_s", world_rate(), "steps/s");
   row("trajectories_per_s", trajectory_rate(), "trajectories/s");
-  const double step = network_rate(true, 512, threads) * step_multiply_adds(), eigen = eigen_rate(threads);
-  row("step_gflops", 2e-9 * step, "GFLOP/s");
-  row("eigen_gflops", 2e-9 * eigen, "GFLOP/s");
-  row("gemm_share", step / eigen, "ratio");
+  for (const NamedKernels<float>& target : all_kernels<float>()) {
+    choose_kernels(target.name);
+    row(("train_" + target.name + "_states_per_s_b512").c_str(), network_rate(true, 512, threads), "states/s");
+    row(("product_" + target.name + "_gflops").c_str(), 2e-9 * product_rate(threads), "GFLOP/s");
+  }
+  row("eigen_gflops", 2e-9 * eigen_rate(threads), "GFLOP/s");
+  for (const int batch : {256, 512, 1024, 4096})
+    row(("train_states_per_s_b" + std::to_string(batch)).c_str(), network_rate(true, batch, threads), "states/s");
+  const double step = network_rate(true, 512, threads), product = product_rate(threads), drawn = draw_rate(threads);
+  row("step_gflops", 2e-9 * step * step_multiply_adds(), "GFLOP/s");
+  row("step_of_product", step * step_multiply_adds() / product, "ratio");
+  row("draw_states_per_s", drawn, "states/s");
+  row("draw_of_step", step / drawn, "ratio");
   return 0;
 }
 
