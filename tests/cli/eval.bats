@@ -112,3 +112,13 @@ setup() {
     fails 65 synpo-train "${TINY[@]}" --fill 21 -n 1 <mixed.jsonl
     says "line 21: window 1, expected 0"
 }
+
+@test "--temperature: in the matrix, the greedy policy at 0, nonsense is 64" {
+    for t in 0 0.5 1; do synpo-eval -q -p two.tsv -n 9 --temperature $t <a.ckpt >t$t; done
+    synpo-eval -q -p two.tsv -n 9 <a.ckpt | cmp - t0.5
+    ! cmp -s t0 t1 || complain "greedy and drawn are the same"
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["temperature"] }' t0.5 | sort -u >got
+    echo 0.5 | cmp - got
+    run -64 --separate-stderr synpo-eval --temperature -1 <a.ckpt
+    run -64 --separate-stderr synpo-eval --temperature x <a.ckpt
+}

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "base/hash.h"
@@ -101,6 +102,44 @@ TEST(Evaluate, AgreesWithEpisodesPlayedOneByOne) {
     EXPECT_GT(wrong, 0);
     EXPECT_GT(timeouts, 0);
   }
+}
+
+// Scores whose softmax is 0.4, 0.3, 0.2, 0.1 and nothing.
+void uneven(const uint8_t*, int, float* scores) {
+  const float chances[kGridActions] = {0.4f, 0.3f, 0.2f, 0.1f, 1e-30f};
+  for (int a = 0; a < kGridActions; ++a) scores[a] = std::log(chances[a]);
+}
+
+TEST(Evaluate, ActionsAreDrawnWithTheProbabilitiesOfThePolicy) {
+  const auto counts = [](double temperature) {
+    std::vector<double> count(kGridActions, 0);
+    Parallel parallel(2);
+    FunctionPolicy policy(uneven);
+    EvalOptions options;
+    options.temperature = temperature;
+    double steps = 0;
+    evaluate(parallel, policy, builtin_world(), kPairs, episodes_of(0, 40), options, [&](const Trajectory& trajectory) {
+      for (const uint8_t action : trajectory.actions) ++count[action], ++steps;
+    });
+    for (double& c : count) c /= steps;
+    EXPECT_EQ(steps, 40 * 3 * kGridStepLimit);  // without picks every episode runs out of time
+    return count;
+  };
+  const auto near = [](const std::vector<double>& got, const std::vector<double>& want) {
+    for (int a = 0; a < kGridActions; ++a) EXPECT_NEAR(got[a], want[a], 4 * std::sqrt(0.25 / (40 * 3 * kGridStepLimit))) << "action " << a;
+  };
+  near(counts(1), {0.4, 0.3, 0.2, 0.1, 0});
+  near(counts(0.5), {16 / 30.0, 9 / 30.0, 4 / 30.0, 1 / 30.0, 0});  // squares
+  near(counts(0), {1, 0, 0, 0, 0});
+}
+
+TEST(Evaluate, DrawsDependNeitherOnThreadsNorOnOrder) {
+  EvalOptions options;
+  options.temperature = 1;
+  const std::vector<EvalEpisode> episodes = episodes_of(0, 70);
+  const std::vector<PairResult> one = run(uneven, episodes, 1, options);
+  const std::vector<PairResult> two = run(uneven, std::vector<EvalEpisode>(episodes.rbegin(), episodes.rend()), 2, options);
+  for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_TRUE(same(one[p], two[p])) << p;
 }
 
 TEST(Evaluate, DependsNeitherOnThreadsNorOnOrderNorOnOtherEpisodes) {
