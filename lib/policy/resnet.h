@@ -60,6 +60,8 @@ class ResNet {
   void finish_norm_backward(Block& block, int i, const T* parameters, T* gradient);
   const T* block_input(size_t b) const { return b == 0 ? input_.data() : blocks_[b - 1].y.data(); }
 
+  static constexpr size_t kInputSize = size_t(kGridCells) * kViewChannels;  // of one sample
+
   int feature_;
   bool normalise_input_;
   std::vector<Block> blocks_;

@@ -390,6 +390,18 @@ TEST(Recipe, LearningRateSchedule) {
   EXPECT_DOUBLE_EQ(options.rate(5000, 110), 0.0001);
 }
 
+TEST(Recipe, BalanceMovesToItsEnd) {
+  ImitationOptions options;
+  options.balance = 0.1;
+  EXPECT_EQ(options.running_options(50, 101).balance, 0.1);
+  options.balance_final = 0.3;
+  EXPECT_DOUBLE_EQ(options.running_options(0, 101).balance, 0.1);
+  EXPECT_DOUBLE_EQ(options.running_options(50, 101).balance, 0.2);
+  EXPECT_DOUBLE_EQ(options.running_options(100, 101).balance, 0.3);
+  EXPECT_DOUBLE_EQ(options.running_options(5000, 101).balance, 0.3);
+  EXPECT_DOUBLE_EQ(options.running_options(0, 1).balance, 0.1);
+}
+
 TEST(Recipe, ComesBackThroughTheCheckpoint) {
   ImitationOptions options = recipe("fast");
   options.learning_rate = 0.1 + 0.2;
