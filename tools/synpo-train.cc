@@ -51,7 +51,10 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
   const auto start = std::chrono::steady_clock::now();
   auto reported = start;
   const int64_t first = run.updates();
-  const int64_t measured = std::max<int64_t>(1, std::min<int64_t>(50, run.options().warm_up > 0 ? int64_t(run.options().warm_up) : run.options().cosine ? 1 : 50));
+  // Timed are updates that do not depend on the total: those of the warm-up, all where nothing moves, else the first.
+  const ImitationOptions& options = run.options();
+  const bool moves = options.cosine != 0 || options.balance_final != 0;
+  const int64_t measured = options.warm_up > 0 ? std::min<int64_t>(50, int64_t(options.warm_up)) : moves ? 1 : 50;
   std::string note;
   // With a limit in time the total is not known before some updates have been timed.
   const auto goes_on = [&] { return run.updates() < run.total_updates() || (limit_s > 0 && run.updates() < first + measured); };

@@ -1,5 +1,6 @@
 #include "learn/recipe.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <stdexcept>
@@ -73,9 +74,12 @@ std::string expectation(const Hyper& hyper) {
 
 }  // namespace
 
+double O::done(int64_t update, int64_t total) const {
+  return std::clamp((update - warm_up) / std::max(1.0, double(total) - warm_up), 0.0, 1.0);
+}
+
 RunningOptions O::running_options(int64_t update, int64_t total) const {
-  const double done = std::min(1.0, double(update) / std::max<double>(1, double(total) - 1));
-  const double now = balance_final == 0 ? balance : balance + (balance_final - balance) * done;
+  const double now = balance_final == 0 ? balance : balance + (balance_final - balance) * done(update, total);
   return {int(running), now, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
 }
 
@@ -96,9 +100,7 @@ PolicyShape O::shape(const GridSet& world) const {
 double O::rate(int64_t update, int64_t total) const {
   if (update < warm_up) return learning_rate * (update + 1) / warm_up;
   if (cosine == 0) return learning_rate;
-  const double span = std::max(1.0, double(total) - warm_up);
-  const double done = std::min(1.0, (update - warm_up) / span);
-  return final_rate + (learning_rate - final_rate) * 0.5 * (1 + std::cos(M_PI * done));
+  return final_rate + (learning_rate - final_rate) * 0.5 * (1 + std::cos(M_PI * done(update, total)));
 }
 
 ImitationOptions recipe(const std::string& name) {

@@ -29,7 +29,9 @@ struct ImitationOptions {
   double feature = 128, basis = 128, embedding = 128, hidden = 512;
 
   LossWeights losses() const { return {reward_loss, env_loss, task_loss}; }
-  // As they are at update `update` (from 0) of `total`.
+  // What part of the schedules is over at update `update` (from 0) of `total`: nothing during the warm-up.
+  double done(int64_t update, int64_t total) const;
+  // As they are at that update.
   RunningOptions running_options(int64_t update, int64_t total) const;
   PolicyShape shape(const GridSet& world) const;
   AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay}; }

@@ -199,7 +199,7 @@ END
 }
 
 @test "broken matrices: 65, with line and column" {
-    for damage in '2s/\t/ /' '2s/[^\t]*$/x/' '2s/[^\t]*$/nan/' '2s/[^\t]*$/1\t1/' '1s/episodes/runs/' '1s/task/env/' '2s/R-B/R\xffB/'; do
+    for damage in '2s/\t/ /' '2s/[^\t]*\t[^\t]*$/x\t0.5/' '2s/[^\t]*\t[^\t]*$/nan\t0.5/' '2s/[^\t]*$/1\t1/' '1s/episodes/runs/' '1s/task/env/' '2s/R-B/R\xffB/'; do
         sed "$damage" m.tsv >bad.tsv
         run ! cmp -s m.tsv bad.tsv
         fails 65 synpo-matrix summary -o out bad.tsv

@@ -20,8 +20,8 @@ load common
 @test "the matrix has the columns of synpo-matrix(5), and merge and summary read what eval wrote" {
     make_inputs
     head -n 1 m.tsv >got
-    printf '%s\t' run world window method seed updates eval_seed first_episode env task seen episodes successes wrong timeouts reward |
-        sed 's/$/length\n/' | cmp - got
+    printf '%s\t' run world window method seed updates eval_seed first_episode env task seen episodes successes wrong timeouts reward length |
+        sed 's/$/temperature\n/' | cmp - got
     synpo-matrix merge m.tsv >merged
     cmp m.tsv merged
     synpo-matrix summary -q --tsv m.tsv >summary.tsv

@@ -395,11 +395,11 @@ TEST(Recipe, BalanceMovesToItsEnd) {
   options.balance = 0.1;
   EXPECT_EQ(options.running_options(50, 101).balance, 0.1);
   options.balance_final = 0.3;
-  EXPECT_DOUBLE_EQ(options.running_options(0, 101).balance, 0.1);
-  EXPECT_DOUBLE_EQ(options.running_options(50, 101).balance, 0.2);
-  EXPECT_DOUBLE_EQ(options.running_options(100, 101).balance, 0.3);
-  EXPECT_DOUBLE_EQ(options.running_options(5000, 101).balance, 0.3);
-  EXPECT_DOUBLE_EQ(options.running_options(0, 1).balance, 0.1);
+  options.warm_up = 10;
+  for (const int update : {0, 5, 10}) EXPECT_DOUBLE_EQ(options.running_options(update, 110).balance, 0.1);  // whatever the total
+  EXPECT_DOUBLE_EQ(options.running_options(60, 110).balance, 0.2);
+  EXPECT_DOUBLE_EQ(options.running_options(110, 110).balance, 0.3);
+  EXPECT_DOUBLE_EQ(options.running_options(5000, 110).balance, 0.3);
 }
 
 TEST(Recipe, ComesBackThroughTheCheckpoint) {
