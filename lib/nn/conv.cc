@@ -127,14 +127,15 @@ void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
 
 template <class T>
 void Conv<T>::reserve(Slab& slab, int samples) const {
-  slab.inputs.grow(size_t(products_) * samples * rows_ * depth_);
-  slab.outputs.grow(size_t(products_) * samples * rows_ * out_);
+  slab.rows = size_t(samples) * rows_;
+  slab.inputs.grow(products_ * slab.rows * depth_);
+  slab.outputs.grow(products_ * slab.rows * out_);
 }
 
 template <class T>
 void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const {
   const int samples = part.size(), rows = samples * rows_;
-  const size_t first = size_t(part.begin) * rows_, slab_rows = slab.outputs.size() / (size_t(products_) * out_);
+  const size_t first = size_t(part.begin) * rows_, slab_rows = slab.rows;
   T* inputs = slab.inputs.data() + first * depth_;
   T* outputs = slab.outputs.data() + first * out_;
   if (transformed()) {
@@ -160,9 +161,8 @@ template <class T>
 void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const {
   const int blocks = shard_count(depth_, gradient_rows_), p = shard / blocks;
   const Range range = shard_range(depth_, gradient_rows_, shard % blocks);
-  const size_t slab_rows = slab.outputs.size() / (size_t(products_) * out_);
-  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, slab.inputs.data() + p * slab_rows * depth_ + range.begin, depth_,
-       slab.outputs.data() + p * slab_rows * out_, out_, dfactors + (size_t(p) * depth_ + range.begin) * out_, out_, accumulate);
+  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_,
+       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + (size_t(p) * depth_ + range.begin) * out_, out_, accumulate);
 }
 
 template <class T>

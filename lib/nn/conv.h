@@ -45,6 +45,7 @@ class Conv {
   static constexpr int kSlab = 512;
   struct Slab {
     Buffer<T> inputs, outputs;
+    size_t rows = 0;  // from one product to the next
   };
   void reserve(Slab& slab, int samples) const;
   void backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const;

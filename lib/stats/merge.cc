@@ -113,15 +113,6 @@ class Merger {
     return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode && before.extra == row.extra;
   }
 
-  static void add_counts(MatrixRow& sum, const MatrixRow& row) {
-    sum.episodes += row.episodes;
-    sum.successes += row.successes;
-    sum.wrong += row.wrong;
-    sum.timeouts += row.timeouts;
-    sum.length += row.length;
-    sum.reward = add_rewards(sum.reward, row.reward);
-  }
-
   std::vector<MatrixSource>& sources_;
   std::vector<std::string> extra_;
   bool has_part_ = false;

@@ -22,4 +22,15 @@ Matrix merge_matrices(std::vector<MatrixSource> sources);
 // a + b, exactly where both are whole hundredths, as GridWorld's rewards are.
 double add_rewards(double a, double b);
 
+// sum += other, for whatever holds the counts of episodes: rows of a matrix and tallies of them.
+template <class Sum, class Counts>
+void add_counts(Sum& sum, const Counts& other) {
+  sum.episodes += other.episodes;
+  sum.successes += other.successes;
+  sum.wrong += other.wrong;
+  sum.timeouts += other.timeouts;
+  sum.length += other.length;
+  sum.reward = add_rewards(sum.reward, other.reward);
+}
+
 }  // namespace synpo

@@ -11,16 +11,6 @@
 namespace synpo {
 namespace {
 
-template <class Counts>
-void add_counts(Tally& sum, const Counts& other) {
-  sum.episodes += other.episodes;
-  sum.successes += other.successes;
-  sum.wrong += other.wrong;
-  sum.timeouts += other.timeouts;
-  sum.length += other.length;
-  sum.reward = add_rewards(sum.reward, other.reward);
-}
-
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double ratio(double sum, int64_t count) { return count > 0 ? sum / double(count) : kNone; }
