@@ -1,8 +1,10 @@
 // What every method is to the learner and the evaluator: parameters in one flat array, a training step, and inference.
 #pragma once
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/parallel.h"
@@ -18,6 +20,9 @@ struct PolicyShape {
   int basis = 128;      // K
   int embedding = 128;  // of e_env and e_task
   int hidden = 512;     // of alpha, beta, f_env and f_task
+  int action_embedding = 0;  // D of phi(a), general form; 0: the direct form
+  int head_hidden = 1024;    // hidden units of the baselines' heads
+  int seam = 32;             // ModuleNet: what a task's module hands to an environment's
   bool normalise_input = false;       // per-channel batch normalisation without affine, in place of fixed scaling
   bool normalise_embeddings = false;  // embeddings are scaled to length sqrt(embedding) before use
 };
@@ -32,9 +37,14 @@ struct LossWeights {
   double reward = 0.01, env = 0.1, task = 0.001;
 };
 
-// Means over the steps of a batch; `total` is weighted.
+// Means over the steps of a batch; NaN where the method has no such loss. `total` is weighted.
 struct Losses {
   double total = 0, policy = 0, reward = 0, env = 0, task = 0;
+  void add_up(const LossWeights& weights) {
+    total = policy;
+    for (const auto& [weight, loss] : {std::pair{weights.reward, reward}, {weights.env, env}, {weights.task, task}})
+      if (!std::isnan(loss)) total += weight * loss;
+  }
 };
 
 // Steps to learn from. Pictures are colour indices [size, 16, 16, history], oldest first; the others are [size].

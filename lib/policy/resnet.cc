@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/random.h"
+#include "nn/init.h"
 
 namespace synpo {
 template <class T>
@@ -50,22 +50,18 @@ ResNet<T>::ResNet(const std::vector<int>& channels, int feature, bool normalise_
 
 template <class T>
 void ResNet<T>::initialise(uint64_t seed, T* parameters, T* statistics) const {
-  uint64_t tensor = 0;
-  const auto uniform = [&](size_t at, size_t count, double bound) {
-    Random random(seed, Purpose::kInit, 0, tensor++);
-    for (size_t i = 0; i < count; ++i) parameters[at + i] = T(bound * (2 * random.uniform() - 1));
-  };
+  InitStream stream(seed, 0);
   for (const Block& block : blocks_)
     for (size_t i = 0; i < block.convs.size(); ++i) {
       const Conv<T>& conv = block.convs[i];
       // kaiming_uniform with a = sqrt(5), PyTorch's default, is uniform within 1 / sqrt(inputs).
-      uniform(block.weights[i], conv.weight_size(), 1 / std::sqrt(double(conv.weight_size()) / conv.out()));
+      stream.uniform(parameters + block.weights[i], conv.weight_size(), 1 / std::sqrt(double(conv.weight_size()) / conv.out()));
       std::fill_n(parameters + block.places[i].scale, conv.out(), T(1));
       std::fill_n(parameters + block.places[i].shift, conv.out(), T(0));
       std::fill_n(statistics + block.places[i].mean, conv.out(), T(0));
       std::fill_n(statistics + block.places[i].variance, conv.out(), T(1));
     }
-  uniform(fc_weight_, flat_ * feature_, std::sqrt(6.0 / (flat_ + feature_)));
+  stream.uniform(parameters + fc_weight_, flat_ * feature_, xavier_bound(int(flat_), feature_));
   std::fill_n(parameters + fc_bias_, feature_, T(0));
   if (normalise_input_) {
     std::fill_n(statistics + input_mean_, kViewChannels, T(0));

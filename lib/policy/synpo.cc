@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "base/random.h"
-#include "nn/dense.h"
 #include "nn/gemm.h"
 #include "nn/loss.h"
 
@@ -14,326 +12,203 @@ constexpr int kRows = 64;  // samples of a shard
 }
 
 template <class T>
-SynPo<T>::SynPo(const PolicyShape& shape)
-    : shape_(shape), encoder_(shape.channels, shape.feature, shape.normalise_input, this->parameters_, this->statistics_) {
-  Layout& layout = this->parameters_;
-  env_ = layout.add("embedding.env", {shape.envs, shape.embedding});
-  task_ = layout.add("embedding.task", {shape.tasks, shape.embedding});
-  alpha_ = add_mlp("alpha", 2 * shape.embedding, shape.basis);
-  beta_ = add_mlp("beta", 2 * shape.embedding, shape.basis);
-  theta_ = layout.add("theta", {shape.actions, shape.feature, shape.basis});
-  policy_bias_ = layout.add("policy.bias", {shape.actions});
-  reward_bias_ = layout.add("reward.bias", {shape.actions});
-  f_env_ = add_mlp("f_env", shape.basis, shape.embedding);
-  f_task_ = add_mlp("f_task", shape.basis, shape.embedding);
-}
-
-template <class T>
-MlpPlace SynPo<T>::add_mlp(const std::string& name, int in, int out) {
-  Layout& layout = this->parameters_;
-  return {in, shape_.hidden, out, layout.add(name + ".hidden.weight", {in, shape_.hidden}),
-          layout.add(name + ".hidden.bias", {shape_.hidden}), layout.add(name + ".out.weight", {shape_.hidden, out}),
-          layout.add(name + ".out.bias", {out})};
-}
+SynPo<T>::SynPo(const PolicyShape& shape, Context context)
+    : shape_(shape), encoder_(shape.channels, shape.feature, shape.normalise_input, this->parameters_, this->statistics_),
+      behind_encoder_(this->parameters_.total()),
+      env_(context == Context::kTask
+               ? std::optional<EmbeddingTable<T>>()
+               : EmbeddingTable<T>("embedding.env", shape.envs, shape.embedding, shape.normalise_embeddings, this->parameters_)),
+      task_("embedding.task", shape.tasks, shape.embedding, shape.normalise_embeddings, this->parameters_),
+      coefficient_{{"alpha", coefficient_inputs(), shape.hidden, shape.basis, this->parameters_},
+                   {"beta", coefficient_inputs(), shape.hidden, shape.basis, this->parameters_}},
+      form_(shape.actions, shape.feature, shape.basis, shape.action_embedding, this->parameters_),
+      bias_{this->parameters_.add("policy.bias", {shape.actions}), this->parameters_.add("reward.bias", {shape.actions})},
+      f_env_(env_ ? Recogniser<T>("f_env", shape.basis, shape.hidden, *env_, this->parameters_) : std::optional<Recogniser<T>>()),
+      f_task_("f_task", shape.basis, shape.hidden, task_, this->parameters_) {}
 
 template <class T>
 void SynPo<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
   std::fill_n(parameters, this->parameters_.total(), T(0));
   encoder_.initialise(options.seed, parameters, statistics);
-  uint64_t tensor = 0;
-  const auto fill = [&](size_t at, size_t count, double bound, double sd) {
-    Random random(options.seed, Purpose::kInit, 1, tensor++);
-    for (size_t i = 0; i < count; ++i) parameters[at + i] = T(sd > 0 ? sd * random.normal() : bound * (2 * random.uniform() - 1));
-  };
-  const auto xavier = [](int in, int out) { return std::sqrt(6.0 / (in + out)); };
-  const PolicyShape& s = shape_;
-  fill(env_, size_t(s.envs) * s.embedding, xavier(s.envs, s.embedding), options.embedding_sd);
-  fill(task_, size_t(s.tasks) * s.embedding, xavier(s.tasks, s.embedding), options.embedding_sd);
-  for (const MlpPlace* mlp : {&alpha_, &beta_, &f_env_, &f_task_}) {
-    fill(mlp->hidden_weight, size_t(mlp->in) * mlp->hidden, xavier(mlp->in, mlp->hidden), 0);
-    fill(mlp->out_weight, size_t(mlp->hidden) * mlp->out, xavier(mlp->hidden, mlp->out), 0);
-  }
-  const size_t theta_size = size_t(s.actions) * s.feature * s.basis;
-  fill(theta_, theta_size, 1 / std::sqrt(double(theta_size)), 0);
+  InitStream stream(options.seed, 1);
+  if (env_) env_->initialise(stream, options.embedding_sd, parameters);
+  task_.initialise(stream, options.embedding_sd, parameters);
+  for (const Perceptron<T>& coefficient : coefficient_) coefficient.initialise(stream, parameters);
+  if (f_env_) f_env_->initialise(stream, parameters);
+  f_task_.initialise(stream, parameters);
+  form_.initialise(stream, parameters);
 }
 
-// Copies the embeddings, scaled to length sqrt(embedding) where asked.
 template <class T>
 void SynPo<T>::use_embeddings(const T* parameters) {
-  const int width = shape_.embedding;
-  const auto use = [&](size_t at, int count, std::vector<T>& used) {
-    used.assign(parameters + at, parameters + at + size_t(count) * width);
-    if (!shape_.normalise_embeddings) return;
-    for (int i = 0; i < count; ++i) {
-      double squares = 1e-12;
-      for (int c = 0; c < width; ++c) squares += double(used[size_t(i) * width + c]) * used[size_t(i) * width + c];
-      const T factor = T(std::sqrt(width / squares));
-      for (int c = 0; c < width; ++c) used[size_t(i) * width + c] *= factor;
-    }
-  };
-  use(env_, shape_.envs, env_used_);
-  use(task_, shape_.tasks, task_used_);
-}
-
-template <class T>
-void SynPo<T>::embeddings_backward(const T* parameters, T* gradient) {
-  const int width = shape_.embedding;
-  const auto back = [&](size_t at, int count, const std::vector<T>& used, const std::vector<T>& dused) {
-    for (int i = 0; i < count; ++i) {
-      const T* e = parameters + at + size_t(i) * width;
-      const T* u = used.data() + size_t(i) * width;
-      const T* du = dused.data() + size_t(i) * width;
-      T* de = gradient + at + size_t(i) * width;
-      double along = 0, squares = 1e-12;
-      for (int c = 0; c < width; ++c) {
-        along += double(du[c]) * u[c];
-        squares += double(e[c]) * e[c];
-      }
-      const double factor = shape_.normalise_embeddings ? std::sqrt(width / squares) : 1;
-      for (int c = 0; c < width; ++c)
-        de[c] += T(shape_.normalise_embeddings ? factor * (du[c] - along / width * u[c]) : du[c]);
-    }
-  };
-  back(env_, shape_.envs, env_used_, denv_);
-  back(task_, shape_.tasks, task_used_, dtask_);
+  if (env_) env_->use(parameters);
+  task_.use(parameters);
 }
 
 // alpha and beta of the pairs, and U and V.
 template <class T>
 void SynPo<T>::compose(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
-  use_embeddings(parameters);
-  const int count = int(pairs.size()), width = shape_.embedding, maps = shape_.actions * shape_.feature;
-  T* input = pair_input_.grow(size_t(count) * 2 * width);
-  for (int i = 0; i < count; ++i) {
-    std::copy_n(env_used_.data() + size_t(pairs[i].first) * width, width, input + size_t(i) * 2 * width);
-    std::copy_n(task_used_.data() + size_t(pairs[i].second) * width, width, input + (size_t(i) * 2 + 1) * width);
+  const int count = int(pairs.size()), width = shape_.embedding;
+  T* input = pair_input_.grow(size_t(count) * coefficient_inputs());
+  for (const auto& [env, task] : pairs) {
+    if (env_) input = std::copy_n(env_->row(env), width, input);
+    input = std::copy_n(task_.row(task), width, input);
   }
-  const MlpPlace* mlps[2] = {&alpha_, &beta_};
-  for (int m = 0; m < 2; ++m) {
-    const MlpPlace& mlp = *mlps[m];
-    T* hidden = hidden_[m].grow(size_t(count) * mlp.hidden);
-    T* coefficients = coefficients_[m].grow(size_t(count) * mlp.out);
-    T* composed = composed_[m].grow(size_t(count) * maps);
-    dense_forward(parallel, count, mlp.in, mlp.hidden, input, parameters + mlp.hidden_weight, parameters + mlp.hidden_bias, true, hidden);
-    dense_forward(parallel, count, mlp.hidden, mlp.out, hidden, parameters + mlp.out_weight, parameters + mlp.out_bias, false, coefficients);
-    parallel.run(shard_count(count, kRows), [&](int shard, int) {
-      const Range range = shard_range(count, kRows, shard);
-      gemm(Op::kAsIs, Op::kTransposed, range.size(), maps, shape_.basis, coefficients + size_t(range.begin) * shape_.basis, shape_.basis,
-           parameters + theta_, shape_.basis, composed + size_t(range.begin) * maps, maps);
-    });
+  for (int h = 0; h < kHeads; ++h) {
+    coefficients_[h] = coefficient_[h].forward(parallel, count, pair_input_.data(), parameters);
+    form_.compose(parallel, count, coefficients_[h], parameters, composed_[h].grow(count * form_.matrix_size()));
   }
 }
 
 // From dcomposed_: gradients of theta, alpha, beta and the embeddings.
 template <class T>
 void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* gradient) {
-  const int count = int(pairs_.size()), width = shape_.embedding, maps = shape_.actions * shape_.feature, basis = shape_.basis;
-  T* dinput = dpair_input_.grow(size_t(count) * 2 * width);
-  const MlpPlace* mlps[2] = {&alpha_, &beta_};
-  for (int m = 0; m < 2; ++m) {
-    const MlpPlace& mlp = *mlps[m];
-    T* dcoefficients = dcoefficients_[m].grow(size_t(count) * basis);
-    T* dhidden = dhidden_[m].grow(size_t(count) * mlp.hidden);
-    const T* dcomposed = dcomposed_[m].data();
-    parallel.run(shard_count(count, kRows), [&](int shard, int) {
-      const Range range = shard_range(count, kRows, shard);
-      gemm(Op::kAsIs, Op::kAsIs, range.size(), basis, maps, dcomposed + size_t(range.begin) * maps, maps, parameters + theta_, basis,
-           dcoefficients + size_t(range.begin) * basis, basis);
-    });
-    parallel.run(shard_count(maps, kRows), [&](int shard, int) {
-      const Range range = shard_range(maps, kRows, shard);
-      gemm(Op::kTransposed, Op::kAsIs, range.size(), basis, count, dcomposed + range.begin, maps, coefficients_[m].data(), basis,
-           gradient + theta_ + size_t(range.begin) * basis, basis, true);
-    });
-    dense_backward<T>(parallel, count, mlp.hidden, mlp.out, hidden_[m].data(), parameters + mlp.out_weight, nullptr, dcoefficients, dhidden,
-                      false, gradient + mlp.out_weight, gradient + mlp.out_bias);
-    dense_backward<T>(parallel, count, mlp.in, mlp.hidden, pair_input_.data(), parameters + mlp.hidden_weight, hidden_[m].data(), dhidden,
-                      dinput, m > 0, gradient + mlp.hidden_weight, gradient + mlp.hidden_bias);
+  const int count = int(pairs_.size()), width = shape_.embedding;
+  T* dinput = dpair_input_.grow(size_t(count) * coefficient_inputs());
+  T* dcoefficients = dcoefficients_.grow(size_t(count) * shape_.basis);
+  for (int h = 0; h < kHeads; ++h) {
+    form_.compose_backward(parallel, count, coefficients_[h], dcomposed_[h].data(), parameters, dcoefficients, gradient);
+    coefficient_[h].backward(parallel, pair_input_.data(), dcoefficients, dinput, h > 0, parameters, gradient);
   }
-  for (int i = 0; i < count; ++i)
-    for (int c = 0; c < width; ++c) {
-      denv_[size_t(pairs_[i].first) * width + c] += dinput[size_t(i) * 2 * width + c];
-      dtask_[size_t(pairs_[i].second) * width + c] += dinput[(size_t(i) * 2 + 1) * width + c];
-    }
+  const auto add = [&](T* to) {
+    for (int c = 0; c < width; ++c) to[c] += *dinput++;
+  };
+  for (const auto& [env, task] : pairs_) {
+    if (env_) add(env_->gradient_row(env));
+    add(task_.gradient_row(task));
+  }
 }
 
-// Distinct pairs in ascending order, and the samples sorted by pair and by label.
+// Policy and reward losses: logits, dpsi_ and dcomposed_.
 template <class T>
-void SynPo<T>::group(const StepBatch<T>& batch) {
-  std::vector<int> count(size_t(shape_.envs) * shape_.tasks, 0), number(count.size());
-  const auto key = [&](int i) { return batch.env[i] * shape_.tasks + batch.task[i]; };
-  for (int i = 0; i < batch.size; ++i) ++count[key(i)];
-  pairs_.clear();
-  pair_begin_.assign(1, 0);
-  for (size_t k = 0; k < count.size(); ++k) {
-    if (count[k] == 0) continue;
-    number[k] = int(pairs_.size());
-    pairs_.emplace_back(int(k) / shape_.tasks, int(k) % shape_.tasks);
-    pair_begin_.push_back(pair_begin_.back() + count[k]);
+Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* gradient,
+                       T* logits) {
+  const int n = batch.size, d = shape_.feature, actions = shape_.actions, columns = form_.columns(), pairs = int(pairs_.size());
+  const size_t matrix = form_.matrix_size();
+  for (int h = 0; h < kHeads; ++h) {
+    q_[h].grow(size_t(n) * columns);
+    dq_[h].grow(size_t(n) * columns);
+    dcomposed_[h].grow(pairs * matrix);
   }
-  pair_of_.resize(batch.size);
-  by_pair_.resize(batch.size);
-  std::vector<int> next(pair_begin_.begin(), pair_begin_.end() - 1);
-  for (int i = 0; i < batch.size; ++i) by_pair_[next[pair_of_[i] = number[key(i)]]++] = i;
-
-  label_begin_.assign(shape_.actions + 1, 0);
-  for (int i = 0; i < batch.size; ++i) ++label_begin_[batch.label[i] + 1];
-  for (int a = 0; a < shape_.actions; ++a) label_begin_[a + 1] += label_begin_[a];
-  by_label_.resize(batch.size);
-  next.assign(label_begin_.begin(), label_begin_.end() - 1);
-  for (int i = 0; i < batch.size; ++i) by_label_[next[batch.label[i]]++] = i;
-}
-
-// Policy and reward losses, pair by pair: logits, dpsi_ and dcomposed_.
-template <class T>
-Losses SynPo<T>::pairs_forward_backward(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                                        T* gradient, T* logits) {
-  const int d = shape_.feature, actions = shape_.actions, pairs = int(pairs_.size());
-  const T inverse = T(1) / T(batch.size);
-  T* du = dcomposed_[0].grow(size_t(pairs) * actions * d);
-  T* dv = dcomposed_[1].grow(size_t(pairs) * actions * d);
-  std::vector<double> policy_loss(pairs), reward_loss(pairs);
-  std::vector<T> dbias(size_t(pairs) * 2 * actions, T(0));
-  parallel.run(pairs, [&](int p, int) {
-    const size_t at = size_t(p) * actions * d;
-    std::fill_n(du + at, actions * d, T(0));
-    std::fill_n(dv + at, actions * d, T(0));
-    const T* u = composed_[0].data() + at;
-    const T* v = composed_[1].data() + at;
-    T* dbias_policy = dbias.data() + size_t(p) * 2 * actions;
-    T* dbias_reward = dbias_policy + actions;
-    std::vector<T> dlogits(actions);
-    for (int j = pair_begin_[p]; j < pair_begin_[p + 1]; ++j) {
-      const int i = by_pair_[j];
-      const T* psi = psi_.data() + size_t(i) * d;
-      T* dpsi = dpsi_.data() + size_t(i) * d;
-      T* score = logits + size_t(i) * actions;
-      for (int a = 0; a < actions; ++a) score[a] = kernels<T>().dot(d, psi, u + a * d) + parameters[policy_bias_ + a];
-      policy_loss[p] += cross_entropy(score, actions, batch.label[i], inverse, dlogits.data());
-      std::fill_n(dpsi, d, T(0));
-      for (int a = 0; a < actions; ++a) {
-        dbias_policy[a] += dlogits[a];
-        for (int c = 0; c < d; ++c) {
-          dpsi[c] += dlogits[a] * u[a * d + c];
-          du[at + a * d + c] += dlogits[a] * psi[c];
-        }
-      }
-      const int a = batch.taken[i];
-      const T error = kernels<T>().dot(d, psi, v + a * d) + parameters[reward_bias_ + a] - batch.reward[i];
-      reward_loss[p] += double(error) * error;
-      const T derror = T(weights.reward) * 2 * error * inverse;
-      dbias_reward[a] += derror;
-      for (int c = 0; c < d; ++c) {
-        dpsi[c] += derror * v[a * d + c];
-        dv[at + a * d + c] += derror * psi[c];
-      }
-    }
+  const auto for_samples = [&](auto&& body) {  // body(pair, sample), all heads of a pair's samples by one thread
+    parallel.run(pairs, [&](int p, int) {
+      for (int j = by_pair_.begin[p]; j < by_pair_.begin[p + 1]; ++j) body(p, size_t(by_pair_.members[j]));
+    });
+  };
+  for_samples([&](int p, size_t i) {
+    for (int h = 0; h < kHeads; ++h) form_.apply(composed_[h].data() + p * matrix, psi_.data() + i * d, q_[h].data() + i * columns);
   });
-  Losses losses;
-  for (int p = 0; p < pairs; ++p) {
-    losses.policy += policy_loss[p] / batch.size;
-    losses.reward += reward_loss[p] / batch.size;
-    for (int a = 0; a < actions; ++a) {
-      gradient[policy_bias_ + a] += dbias[size_t(p) * 2 * actions + a];
-      gradient[reward_bias_ + a] += dbias[(size_t(p) * 2 + 1) * actions + a];
-    }
-  }
-  return losses;
-}
 
-// One disentanglement loss at x_: the gradient of x is added to dx_.
-template <class T>
-double SynPo<T>::recognise(Parallel& parallel, const StepBatch<T>& batch, const MlpPlace& mlp, const int* truth, int classes,
-                           const T* embeddings, T* dembeddings, double weight, const T* parameters, T* gradient) {
-  const int n = batch.size, width = shape_.embedding;
-  T* hidden = f_hidden_.grow(size_t(n) * mlp.hidden);
-  T* dhidden = df_hidden_.grow(size_t(n) * mlp.hidden);
-  T* f = f_.grow(size_t(n) * width);
-  T* df = df_.grow(size_t(n) * width);
-  T* scores = scores_.grow(size_t(n) * classes);
-  T* dscores = dscores_.grow(size_t(n) * classes);
-  dense_forward(parallel, n, mlp.in, mlp.hidden, x_.data(), parameters + mlp.hidden_weight, parameters + mlp.hidden_bias, true, hidden);
-  dense_forward(parallel, n, mlp.hidden, width, hidden, parameters + mlp.out_weight, parameters + mlp.out_bias, false, f);
   const int shards = shard_count(n, kRows);
+  T* dlogits = dlogits_.grow(size_t(n) * actions);
   std::vector<double> loss(shards, 0);
   parallel.run(shards, [&](int shard, int) {
     const Range range = shard_range(n, kRows, shard);
-    const size_t at = size_t(range.begin) * classes;
-    gemm(Op::kAsIs, Op::kTransposed, range.size(), classes, width, f + size_t(range.begin) * width, width, embeddings, width, scores + at,
-         classes);
+    const size_t at = size_t(range.begin) * actions, q_at = size_t(range.begin) * columns;
+    form_.scores(range.size(), q_[kPolicy].data() + q_at, parameters, logits + at);
+    kernels<T>().add_bias(range.size(), actions, parameters + bias_[kPolicy], false, logits + at);
     for (int i = range.begin; i < range.end; ++i)
-      loss[shard] += cross_entropy(scores + size_t(i) * classes, classes, truth[by_label_[i]], T(weight / n), dscores + size_t(i) * classes);
-    gemm(Op::kAsIs, Op::kAsIs, range.size(), width, classes, dscores + at, classes, embeddings, width, df + size_t(range.begin) * width, width);
+      loss[shard] += cross_entropy(logits + size_t(i) * actions, actions, batch.label[i], T(1) / T(n), dlogits + size_t(i) * actions);
+    form_.scores_backward(range.size(), dlogits + at, parameters, dq_[kPolicy].data() + q_at);
   });
-  gemm(Op::kTransposed, Op::kAsIs, classes, width, n, dscores, classes, f, width, dembeddings, width, true);
-  dense_backward<T>(parallel, n, mlp.hidden, width, hidden, parameters + mlp.out_weight, nullptr, df, dhidden, false,
-                    gradient + mlp.out_weight, gradient + mlp.out_bias);
-  dense_backward<T>(parallel, n, mlp.in, mlp.hidden, x_.data(), parameters + mlp.hidden_weight, hidden, dhidden, dx_.data(), true,
-                    gradient + mlp.hidden_weight, gradient + mlp.hidden_bias);
-  double sum = 0;
-  for (const double part : loss) sum += part;
-  return sum / n;
+  form_.phi_backward(n, q_[kPolicy].data(), dlogits, gradient);
+  Losses losses;
+  for (const double part : loss) losses.policy += part / n;
+  for (int i = 0; i < n; ++i) {
+    for (int a = 0; a < actions; ++a) gradient[bias_[kPolicy] + a] += dlogits[size_t(i) * actions + a];
+    const int a = batch.taken[i];
+    const T* q = q_[kReward].data() + size_t(i) * columns;
+    const T error = form_.score(q, a, parameters) + parameters[bias_[kReward] + a] - batch.reward[i];
+    losses.reward += double(error) * error / n;
+    const T derror = T(weights.reward) * 2 * error / T(n);
+    gradient[bias_[kReward] + a] += derror;
+    form_.score_backward(q, a, derror, parameters, dq_[kReward].data() + size_t(i) * columns, gradient);
+  }
+
+  parallel.run(pairs, [&](int p, int) {
+    for (Buffer<T>& dcomposed : dcomposed_) std::fill_n(dcomposed.data() + p * matrix, matrix, T(0));
+  });
+  std::fill_n(dpsi_.data(), size_t(n) * d, T(0));
+  for_samples([&](int p, size_t i) {
+    for (int h = 0; h < kHeads; ++h)
+      form_.apply_backward(composed_[h].data() + p * matrix, psi_.data() + i * d, dq_[h].data() + i * columns, dpsi_.data() + i * d,
+                           dcomposed_[h].data() + p * matrix);
+  });
+  return losses;
 }
 
-// Both disentanglement losses. Samples are taken in the order of their labels, so that x is one product an action.
+// The disentanglement losses. Samples are taken in the order of their labels, so that x is one product an action.
 template <class T>
 void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* gradient,
                            Losses& losses) {
-  const int n = batch.size, d = shape_.feature, basis = shape_.basis, actions = shape_.actions;
+  const int n = batch.size, d = shape_.feature, basis = shape_.basis;
+  const std::vector<int>& order = by_label_.members;
   T* sorted = psi_sorted_.grow(size_t(n) * d);
   T* dsorted = dpsi_sorted_.grow(size_t(n) * d);
   T* x = x_.grow(size_t(n) * basis);
   T* dx = dx_.grow(size_t(n) * basis);
-  for (int j = 0; j < n; ++j) std::copy_n(psi_.data() + size_t(by_label_[j]) * d, d, sorted + size_t(j) * d);
+  for (int j = 0; j < n; ++j) std::copy_n(psi_.data() + size_t(order[j]) * d, d, sorted + size_t(j) * d);
   std::fill_n(dx, size_t(n) * basis, T(0));
-  // Shards within one label each: (label, first sample, end).
+  form_.use_actions(parallel, by_label_.keys, parameters);
+  // Shards within one label each.
   struct Part {
-    int label, begin, end;
+    int group;
+    Range rows;
   };
   std::vector<Part> parts;
-  for (int a = 0; a < actions; ++a)
-    for (int begin = label_begin_[a]; begin < label_begin_[a + 1]; begin += kRows)
-      parts.push_back({a, begin, std::min(begin + kRows, label_begin_[a + 1])});
-  const auto theta = [&](int a) { return parameters + theta_ + size_t(a) * d * basis; };
+  for (int g = 0; g < by_label_.count(); ++g)
+    for (int begin = by_label_.begin[g]; begin < by_label_.begin[g + 1]; begin += kRows)
+      parts.push_back({g, {begin, std::min(begin + kRows, by_label_.begin[g + 1])}});
   parallel.run(int(parts.size()), [&](int shard, int) {
-    const Part& part = parts[shard];
-    gemm(Op::kAsIs, Op::kAsIs, part.end - part.begin, basis, d, sorted + size_t(part.begin) * d, d, theta(part.label), basis,
-         x + size_t(part.begin) * basis, basis);
+    const auto& [group, rows] = parts[shard];
+    gemm(Op::kAsIs, Op::kAsIs, rows.size(), basis, d, sorted + size_t(rows.begin) * d, d, form_.action_matrix(group, parameters), basis,
+         x + size_t(rows.begin) * basis, basis);
   });
-  losses.env = recognise(parallel, batch, f_env_, batch.env, shape_.envs, env_used_.data(), denv_.data(), weights.env, parameters, gradient);
-  losses.task = recognise(parallel, batch, f_task_, batch.task, shape_.tasks, task_used_.data(), dtask_.data(), weights.task, parameters, gradient);
+  truth_.resize(n);
+  const auto recognise = [&](Recogniser<T>& f, const int* truth, EmbeddingTable<T>& table, double weight) {
+    for (int j = 0; j < n; ++j) truth_[j] = truth[order[j]];
+    return f.step(parallel, n, x, truth_.data(), table, weight, parameters, dx, gradient);
+  };
+  losses.env = f_env_ ? recognise(*f_env_, batch.env, *env_, weights.env) : std::nan("");
+  losses.task = recognise(f_task_, batch.task, task_, weights.task);
   parallel.run(int(parts.size()), [&](int shard, int) {
-    const Part& part = parts[shard];
-    gemm(Op::kAsIs, Op::kTransposed, part.end - part.begin, d, basis, dx + size_t(part.begin) * basis, basis, theta(part.label), basis,
-         dsorted + size_t(part.begin) * d, d);
-    for (int j = part.begin; j < part.end; ++j)
-      for (int c = 0; c < d; ++c) dpsi_[size_t(by_label_[j]) * d + c] += dsorted[size_t(j) * d + c];
+    const auto& [group, rows] = parts[shard];
+    gemm(Op::kAsIs, Op::kTransposed, rows.size(), d, basis, dx + size_t(rows.begin) * basis, basis, form_.action_matrix(group, parameters),
+         basis, dsorted + size_t(rows.begin) * d, d);
+    for (int j = rows.begin; j < rows.end; ++j)
+      for (int c = 0; c < d; ++c) dpsi_[size_t(order[j]) * d + c] += dsorted[size_t(j) * d + c];
   });
-  parallel.run(actions, [&](int a, int) {
-    const int begin = label_begin_[a], count = label_begin_[a + 1] - begin;
-    if (count > 0)
-      gemm(Op::kTransposed, Op::kAsIs, d, basis, count, sorted + size_t(begin) * d, d, dx + size_t(begin) * basis, basis,
-           gradient + theta_ + size_t(a) * d * basis, basis, true);
+  parallel.run(by_label_.count(), [&](int g, int) {
+    const size_t begin = by_label_.begin[g];
+    gemm(Op::kTransposed, Op::kAsIs, d, basis, by_label_.size(g), sorted + begin * d, d, dx + begin * basis, basis,
+         form_.action_matrix_gradient(g, gradient), basis, true);
   });
+  form_.finish_actions(parallel, parameters, gradient);
 }
 
 template <class T>
 Losses SynPo<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
                       T* gradient, T* logits) {
-  std::fill(gradient + env_, gradient + this->parameters_.total(), T(0));  // the encoder overwrites its own
+  // The encoder overwrites its own part.
+  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
   psi_.grow(size_t(batch.size) * shape_.feature);
   dpsi_.grow(size_t(batch.size) * shape_.feature);
-  denv_.assign(size_t(shape_.envs) * shape_.embedding, T(0));
-  dtask_.assign(size_t(shape_.tasks) * shape_.embedding, T(0));
-  group(batch);
+  const int tasks = shape_.tasks;
+  by_pair_.sort(batch.size, (env_ ? shape_.envs : 1) * tasks, [&](int i) { return (env_ ? batch.env[i] * tasks : 0) + batch.task[i]; });
+  by_label_.sort(batch.size, shape_.actions, [&](int i) { return batch.label[i]; });
+  pairs_.clear();
+  for (const int key : by_pair_.keys) pairs_.emplace_back(key / tasks, key % tasks);
+
   encoder_.forward(parallel, batch.size, batch.pictures, parameters, statistics, psi_.data());
+  use_embeddings(parameters);
   compose(parallel, parameters, pairs_);
-  Losses losses = pairs_forward_backward(parallel, batch, weights, parameters, gradient, logits);
+  Losses losses = heads(parallel, batch, weights, parameters, gradient, logits);
   compose_backward(parallel, parameters, gradient);
   disentangle(parallel, batch, weights, parameters, gradient, losses);
-  embeddings_backward(parameters, gradient);
+  if (env_) env_->backward(parameters, gradient);
+  task_.backward(parameters, gradient);
   encoder_.backward(parallel, parameters, dpsi_.data(), gradient);
-  losses.total = losses.policy + weights.reward * losses.reward + weights.env * losses.env + weights.task * losses.task;
+  losses.add_up(weights);
   return losses;
 }
 
@@ -341,19 +216,20 @@ template <class T>
 void SynPo<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
                                  const std::vector<std::pair<int, int>>& pairs) {
   encoder_.prepare_inference(parallel, parameters, statistics);
+  use_embeddings(parameters);
   compose(parallel, parameters, pairs);
-  inference_bias_.assign(parameters + policy_bias_, parameters + policy_bias_ + shape_.actions);
+  frozen_parameters_.assign(parameters, parameters + this->parameters_.total());
 }
 
 template <class T>
 void SynPo<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  const int d = shape_.feature, actions = shape_.actions;
-  std::vector<T> psi(size_t(size) * d);
+  const T* parameters = frozen_parameters_.data();
+  std::vector<T> psi(size_t(size) * shape_.feature), q(size_t(size) * form_.columns());
   encoder_.infer(thread, size, pictures, psi.data());
   for (int i = 0; i < size; ++i)
-    for (int a = 0; a < actions; ++a)
-      logits[size_t(i) * actions + a] =
-          kernels<T>().dot(d, psi.data() + size_t(i) * d, composed_[0].data() + (size_t(pair[i]) * actions + a) * d) + inference_bias_[a];
+    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * shape_.feature, q.data() + size_t(i) * form_.columns());
+  form_.scores(size, q.data(), parameters, logits);
+  kernels<T>().add_bias(size, shape_.actions, parameters + bias_[kPolicy], false, logits);
 }
 
 template class SynPo<float>;

@@ -1,0 +1,39 @@
+// A dense layer with ReLU and a dense layer behind it, over rows: in -> hidden -> out.
+#pragma once
+#include <string>
+
+#include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/init.h"
+#include "nn/layout.h"
+
+namespace synpo {
+
+template <class T>
+class Perceptron {
+ public:
+  // Adds NAME.hidden.weight [in, hidden], NAME.hidden.bias, NAME.out.weight [hidden, out] and NAME.out.bias.
+  Perceptron(const std::string& name, int in, int hidden, int out, Layout& parameters);
+
+  int in() const { return in_; }
+  int out() const { return out_; }
+
+  // Weights Xavier uniform; biases are left as they are.
+  void initialise(InitStream& stream, T* parameters) const;
+
+  // The outputs [rows, out] for x [rows, in]; they stay until the next call. backward() needs x again.
+  const T* forward(Parallel& parallel, int rows, const T* x, const T* parameters);
+  // From dy, the gradient of the outputs: dx (may be null) = or, where add_dx, +=; the weights' gradients +=.
+  void backward(Parallel& parallel, const T* x, T* dy, T* dx, bool add_dx, const T* parameters, T* gradient);
+
+ private:
+  int in_, hidden_, out_;
+  size_t hidden_weight_, hidden_bias_, out_weight_, out_bias_;
+  int rows_ = 0;
+  Buffer<T> h_, dh_, y_;
+};
+
+extern template class Perceptron<float>;
+extern template class Perceptron<double>;
+
+}  // namespace synpo
