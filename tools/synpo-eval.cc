@@ -18,7 +18,7 @@ namespace {
 int body(int argc, char** argv) {
   std::string checkpoint_path = "-", pairs_path, output_path = "-", record_path;
   int64_t count = 100, first = 0, seed = 1, threads = 0;
-  double temperature = kTemperature;
+  double temperature = kTemperature;  // unless the method has another
   bool describe = false, quiet = false;
   Options options("synpo-eval", "[-p PAIRS] [-n EPISODES] [OPTION]... < CHECKPOINT > MATRIX",
                   "Runs the policy of a checkpoint on every pair and counts successes.");
@@ -43,6 +43,7 @@ int body(int argc, char** argv) {
   }
   const GridSet world = world_of(checkpoint);
   Model model = load_model(checkpoint, world);
+  if (!options.given("temperature")) temperature = model.policy->temperature();
   std::vector<PairRow> rows;
   const bool listed = !pairs_path.empty();
   if (listed) {

@@ -1,6 +1,7 @@
 // Imitation learning: expert trajectories on stdin, a checkpoint on stdout.
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -101,7 +102,12 @@ int body(int argc, char** argv) {
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
       .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones", s.time)
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)", s.pairs)
-      .text('m', "method", "NAME", "method: synpo", s.method)
+      .call('m', "method", "NAME", "synpo, mlp, mtl, modulenet or sf [synpo]",
+            [&](const std::string& name) {
+              const auto& names = method_names();
+              if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected synpo, mlp, mtl, modulenet or sf");
+              s.method = name;
+            })
       .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
       .text('w', "world", "WORLD", "gridworld, or gridworld:DIR", s.world)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
@@ -145,7 +151,7 @@ int body(int argc, char** argv) {
   if (resumes) {
     run = std::make_unique<Imitation>(world, parallel, from);
   } else {
-    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(), seen, uint64_t(s.seed));
+    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method), seen, uint64_t(s.seed));
     if (!s.init.empty()) run->take_weights(load_model(load(s.init), world));
   }
   if (options.given("count") || (!resumes && limit_s == 0)) run->set_total_updates(s.updates);

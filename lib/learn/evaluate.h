@@ -21,10 +21,6 @@ struct EvalEpisode {
   int64_t number;
 };
 
-// The temperature that tools act with where nothing else is said: with the best action alone, a policy that has learned most of its moves
-// still walks in circles where it has not.
-constexpr double kTemperature = 0.5;
-
 struct EvalOptions {
   uint64_t seed = 1;
   int window = 1;

@@ -100,6 +100,7 @@ bool Imitation::update(TrajectoryStream& stream) {
   add_trajectories(stream);
   if (memory_.size() == 0) return false;
   const bool single_steps = options_.batch_states > 0;
+  batch_.needs = model_.policy->needs();
   running_.set_options(options_.running_options(model_.updates, total_updates_));
   if (single_steps)
     running_.draw(memory_, parallel_, int(options_.batch_states), model_.window, model_.updates, batch_);
@@ -108,8 +109,17 @@ bool Imitation::update(TrajectoryStream& stream) {
 
   const int n = batch_.size();
   logits_.grow(size_t(n) * kGridActions);
-  const StepBatch<float> steps = {n, batch_.pictures.data(), batch_.env.data(), batch_.task.data(), batch_.label.data(), batch_.taken.data(),
-                                  batch_.reward.data()};
+  const StepBatch<float> steps = {n,
+                                  batch_.pictures.data(),
+                                  batch_.env.data(),
+                                  batch_.task.data(),
+                                  batch_.label.data(),
+                                  batch_.taken.data(),
+                                  batch_.reward.data(),
+                                  model_.seed,
+                                  uint64_t(model_.updates),
+                                  batch_.next.data(),
+                                  batch_.planner_q.data()};
   const Losses losses = model_.policy->step(parallel_, steps, options_.losses(), model_.parameters.data(), model_.statistics.data(),
                                             gradient_.data(), logits_.data());
   if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", model_.updates + 1, ": try a smaller --lr");
@@ -181,7 +191,7 @@ RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
     for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
     model_.policy->prepare_inference(parallel_, best_parameters().data(), best_statistics().data(), pairs);
     PairResult sum;
-    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, {model_.seed, model_.window, kGridStepLimit, kTemperature}))
+    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, {model_.seed, model_.window, kGridStepLimit, model_.policy->temperature()}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;

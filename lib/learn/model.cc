@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "policy/synpo.h"
+#include "policy/mlp.h"
+#include "policy/modulenet.h"
+#include "policy/mtl.h"
+#include "policy/sf.h"
 
 namespace synpo {
 namespace {
@@ -14,11 +17,19 @@ constexpr int64_t kSizeLimit = 65536;
 struct SizeName {
   const char* name;
   int PolicyShape::*member;
+  int low = 1;
+  bool late = false;  // checkpoints made before it have its default
 };
-constexpr SizeName kSizes[] = {{"envs", &PolicyShape::envs},         {"tasks", &PolicyShape::tasks},
-                               {"actions", &PolicyShape::actions},   {"feature", &PolicyShape::feature},
-                               {"basis", &PolicyShape::basis},       {"embedding", &PolicyShape::embedding},
-                               {"hidden", &PolicyShape::hidden}};
+constexpr SizeName kSizes[] = {{"envs", &PolicyShape::envs},
+                               {"tasks", &PolicyShape::tasks},
+                               {"actions", &PolicyShape::actions},
+                               {"feature", &PolicyShape::feature},
+                               {"basis", &PolicyShape::basis},
+                               {"embedding", &PolicyShape::embedding},
+                               {"hidden", &PolicyShape::hidden},
+                               {"action_embedding", &PolicyShape::action_embedding, 0, true},
+                               {"head_hidden", &PolicyShape::head_hidden, 1, true},
+                               {"seam", &PolicyShape::seam, 1, true}};
 struct SwitchName {
   const char* name;
   bool PolicyShape::*member;
@@ -28,14 +39,24 @@ constexpr SwitchName kSwitches[] = {{"normalise_input", &PolicyShape::normalise_
 
 }  // namespace
 
+const std::vector<std::string>& method_names() {
+  static const std::vector<std::string> names = {"synpo", "mlp", "mtl", "modulenet", "sf"};
+  return names;
+}
+
 std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape) {
   if (method == "synpo") return std::make_unique<SynPo<float>>(shape);
-  fail(Exit::kData, "unknown method ", quoted(method), ", this build has synpo");
+  if (method == "mlp") return std::make_unique<Mlp<float>>(shape);
+  if (method == "mtl") return std::make_unique<Mtl<float>>(shape);
+  if (method == "modulenet") return std::make_unique<ModuleNet<float>>(shape);
+  if (method == "sf") return std::make_unique<Sf<float>>(shape);
+  fail(Exit::kData, "unknown method ", quoted(method), ", expected synpo, mlp, mtl, modulenet or sf");
 }
 
 std::map<std::string, int64_t> describe_shape(const PolicyShape& shape) {
   std::map<std::string, int64_t> sizes;
   for (const SizeName& size : kSizes) sizes[size.name] = shape.*size.member;
+  sizes["sf_loss"] = int64_t(shape.sf_loss);
   for (const SwitchName& flag : kSwitches) sizes[flag.name] = shape.*flag.member;
   for (size_t i = 0; i < shape.channels.size(); ++i) sizes["channels" + std::to_string(i + 1)] = shape.channels[i];
   return sizes;
@@ -50,7 +71,9 @@ PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes) {
     return int(found->second);
   };
   PolicyShape shape;
-  for (const SizeName& size : kSizes) shape.*size.member = get(size.name, 1, kSizeLimit);
+  for (const SizeName& size : kSizes)
+    if (!size.late || sizes.count(size.name)) shape.*size.member = get(size.name, size.low, kSizeLimit);
+  if (sizes.count("sf_loss")) shape.sf_loss = SfLoss(get("sf_loss", 0, 2));
   for (const SwitchName& flag : kSwitches) shape.*flag.member = get(flag.name, 0, 1) != 0;
   for (size_t i = 0; i < shape.channels.size(); ++i) shape.channels[i] = get("channels" + std::to_string(i + 1), 1, 4096);
   return shape;

@@ -12,6 +12,8 @@
 
 namespace synpo {
 
+const std::vector<std::string>& method_names();
+// Throws kData for another name.
 std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape);
 std::map<std::string, int64_t> describe_shape(const PolicyShape& shape);
 // Throws kData for sizes that are missing or out of bounds.

@@ -19,11 +19,13 @@ struct Hyper {
   bool whole;
   const char* help;
   const char* heading = nullptr;
+  std::vector<std::string> choices = {};  // names of 0, 1, ...
+  bool late = false;  // checkpoints made before this option have its default
 };
 
 constexpr double kMany = 1e9;
 
-constexpr Hyper kHypers[] = {
+const Hyper kHypers[] = {
     {"trajectories", &O::trajectories, 1, 1e5, true, "whole trajectories an update, where --batch-states is 0", "What an update learns from"},
     {"batch-states", &O::batch_states, 0, 1e6, true, "single steps an update, from episodes that run side by side"},
     {"memory", &O::memory, 1, 1e7, true, "trajectories kept in the replay memory"},
@@ -51,24 +53,54 @@ constexpr Hyper kHypers[] = {
     {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},
     {"normalise-input", &O::normalise_input, 0, 1, true, "1: batch normalisation of the pictures, 0: fixed scaling"},
     {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "1: embeddings are scaled to one length"},
-    {"feature", &O::feature, 1, 4096, true, "size d of the state feature"},
+    {"feature", &O::feature, 1, 4096, true, "size d of the state feature; mlp: 256"},
     {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
     {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
     {"hidden", &O::hidden, 1, 16384, true, "hidden units of alpha, beta, f_env and f_task"},
+    {"action-embedding", &O::action_embedding, 0, 4096, true, "synpo, mtl: size of learned phi(a); 0: phi(a) is one-hot", nullptr, {}, true},
+    {"head-hidden", &O::head_hidden, 1, 16384, true, "mlp, modulenet, sf: hidden units of their own parts; modulenet: 128, sf: 512",
+     "Single methods", {}, true},
+    {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true},
+    {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true},
+    {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr, {"td", "q", "ce"}, true},
+    {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true},
 };
+
+// What differs from method to method, in every recipe.
+struct MethodDefault {
+  const char *method, *name;
+  double value;
+};
+constexpr MethodDefault kMethodDefaults[] = {
+    {"mlp", "feature", 256}, {"modulenet", "head-hidden", 128}, {"sf", "head-hidden", 512}, {"sf", "reward-loss", 1}};
+
+const Hyper& find(const std::string& name) {
+  return *std::find_if(std::begin(kHypers), std::end(kHypers), [&](const Hyper& hyper) { return hyper.name == name; });
+}
 
 std::string shortest(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
+std::string show(const Hyper& hyper, double value) { return hyper.choices.empty() ? shortest(value) : hyper.choices[size_t(value)]; }
+
 bool parse(const std::string& text, const Hyper& hyper, double& value) {
+  if (!hyper.choices.empty()) {
+    value = double(std::find(hyper.choices.begin(), hyper.choices.end(), text) - hyper.choices.begin());
+    return value < double(hyper.choices.size());
+  }
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() && value >= hyper.low && value <= hyper.high &&
          (!hyper.whole || value == std::floor(value));
 }
 
 std::string expectation(const Hyper& hyper) {
+  if (!hyper.choices.empty()) {
+    std::string names = "expected " + hyper.choices[0];
+    for (size_t i = 1; i < hyper.choices.size(); ++i) names += (i + 1 < hyper.choices.size() ? ", " : " or ") + hyper.choices[i];
+    return names;
+  }
   return concat("expected ", hyper.whole ? "a whole number" : "a number", " from ", hyper.low, " to ", hyper.high);
 }
 
@@ -92,6 +124,10 @@ PolicyShape O::shape(const GridSet& world) const {
   shape.basis = int(basis);
   shape.embedding = int(embedding);
   shape.hidden = int(hidden);
+  shape.action_embedding = int(action_embedding);
+  shape.head_hidden = int(head_hidden);
+  shape.seam = int(seam);
+  shape.sf_loss = SfLoss(int(sf_loss));
   shape.normalise_input = normalise_input != 0;
   shape.normalise_embeddings = normalise_embeddings != 0;
   return shape;
@@ -103,8 +139,10 @@ double O::rate(int64_t update, int64_t total) const {
   return final_rate + (learning_rate - final_rate) * 0.5 * (1 + std::cos(M_PI * done(update, total)));
 }
 
-ImitationOptions recipe(const std::string& name) {
+ImitationOptions recipe(const std::string& name, const std::string& method) {
   ImitationOptions options;
+  for (const MethodDefault& given : kMethodDefaults)
+    if (method == given.method) options.*find(given.name).value = given.value;
   if (name == "paper") {
     options.normalise_input = 1;
     return options;
@@ -140,7 +178,7 @@ void RecipeOptions::add_to(Options& options) {
   const ImitationOptions fast = recipe("fast"), paper = recipe("paper");
   for (const Hyper& hyper : kHypers) {
     if (hyper.heading) options.section(hyper.heading);
-    const std::string a = shortest(fast.*hyper.value), b = shortest(paper.*hyper.value);
+    const std::string a = show(hyper, fast.*hyper.value), b = show(hyper, paper.*hyper.value);
     const std::string shown = std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
     options.call(0, hyper.name, "X", (help[hyper.name] = shown).c_str(), [this, &hyper](const std::string& text) {
       double value = 0;
@@ -148,12 +186,19 @@ void RecipeOptions::add_to(Options& options) {
       changes_[hyper.name] = value;
     });
   }
+  options.section("Ablations")
+      .flag(0, "no-reward-loss", "the same as --reward-loss 0", no_reward_loss_)
+      .flag(0, "no-env-loss", "the same as --env-loss 0", no_env_loss_)
+      .flag(0, "no-task-loss", "the same as --task-loss 0", no_task_loss_);
 }
 
-ImitationOptions RecipeOptions::result() const {
-  ImitationOptions options = recipe(recipe_);
+ImitationOptions RecipeOptions::result(const std::string& method) const {
+  ImitationOptions options = recipe(recipe_, method);
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
+  if (no_reward_loss_) options.reward_loss = 0;
+  if (no_env_loss_) options.env_loss = 0;
+  if (no_task_loss_) options.task_loss = 0;
   if (options.batch_states == 0)
     for (const char* name : {"balance", "balance-final", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
@@ -162,7 +207,7 @@ ImitationOptions RecipeOptions::result() const {
 
 std::map<std::string, std::string> describe_options(const ImitationOptions& options) {
   std::map<std::string, std::string> values;
-  for (const Hyper& hyper : kHypers) values[hyper.name] = shortest(options.*hyper.value);
+  for (const Hyper& hyper : kHypers) values[hyper.name] = show(hyper, options.*hyper.value);
   return values;
 }
 
@@ -170,6 +215,7 @@ ImitationOptions parse_options(const std::map<std::string, std::string>& values)
   ImitationOptions options;
   for (const Hyper& hyper : kHypers) {
     const auto found = values.find(hyper.name);
+    if (found == values.end() && hyper.late) continue;
     if (found == values.end()) fail(Exit::kData, "the checkpoint has no option '", hyper.name, "'");
     if (!parse(found->second, hyper, options.*hyper.value))
       fail(Exit::kData, "option '", hyper.name, "': found ", quoted(found->second), ", ", expectation(hyper));

@@ -26,9 +26,11 @@ struct ImitationOptions {
   double reward_loss = 0.01, env_loss = 0.1, task_loss = 0.001;
   // The network.
   double embedding_sd = 0, normalise_input = 0, normalise_embeddings = 0;
-  double feature = 128, basis = 128, embedding = 128, hidden = 512;
+  double feature = 128, basis = 128, embedding = 128, hidden = 512, action_embedding = 0, head_hidden = 1024;
+  // Of single methods.
+  double seam = 32, dropout = 0.2, discount = 0.99, sf_loss = 0;
 
-  LossWeights losses() const { return {reward_loss, env_loss, task_loss}; }
+  LossWeights losses() const { return {reward_loss, env_loss, task_loss, dropout, discount}; }
   // What part of the schedules is over at update `update` (from 0) of `total`: nothing during the warm-up.
   double done(int64_t update, int64_t total) const;
   // As they are at that update.
@@ -39,8 +41,9 @@ struct ImitationOptions {
   double rate(int64_t update, int64_t total) const;
 };
 
-// "paper" is Algorithm 1 and the supplement to the letter; "fast" is the default. Throws kUsage for another name.
-ImitationOptions recipe(const std::string& name);
+// "paper" is Algorithm 1 and the supplement to the letter; "fast" is the default. Throws kUsage for another name. Some values depend on the
+// method.
+ImitationOptions recipe(const std::string& name, const std::string& method = "synpo");
 constexpr char kDefaultRecipe[] = "fast";
 
 // Values given by name, over a recipe.
@@ -49,13 +52,13 @@ class RecipeOptions {
   // Adds --recipe and an option for every hyper-parameter.
   void add_to(Options& options);
   // The recipe with what the command line changed. Throws kUsage for combinations that cannot be.
-  ImitationOptions result() const;
-  bool given() const { return !changes_.empty() || recipe_given_; }
+  ImitationOptions result(const std::string& method) const;
+  bool given() const { return !changes_.empty() || recipe_given_ || no_reward_loss_ || no_env_loss_ || no_task_loss_; }
   const std::string& name() const { return recipe_; }
 
  private:
   std::string recipe_ = kDefaultRecipe;
-  bool recipe_given_ = false;
+  bool recipe_given_ = false, no_reward_loss_ = false, no_env_loss_ = false, no_task_loss_ = false;
   std::map<std::string, double> changes_;
 };
 

@@ -12,6 +12,12 @@ constexpr int kUnit = 32;  // samples of a shard
 constexpr size_t kPicture = size_t(kGridCells) * kHistory;
 constexpr uint64_t kRestartStream = uint64_t{1} << 32;  // keeps restarts and updates apart among the numbers of Purpose::kRollIn
 
+void put_planner_q(const GridSet& world, EnvTask pair, const GridState& state, int at, Minibatch& batch) {
+  if (!batch.needs.planner_q) return;
+  const std::array<int, kGridActions> cents = world.planner(pair.env).q_cents(world.tasks()[pair.task], state);
+  for (int a = 0; a < kGridActions; ++a) batch.planner_q[size_t(at) * kGridActions + a] = float(cents[a]) / 100;
+}
+
 }  // namespace
 
 StepKind step_kind(const GridState& state, int label) {
@@ -28,6 +34,8 @@ void Minibatch::resize(int size) {
   taken.resize(size);
   reward.resize(size);
   kind.resize(size);
+  next.assign(needs.next ? size : 0, StepBatch<float>::kUnknown);
+  planner_q.resize(needs.planner_q ? size_t(size) * kGridActions : 0);
 }
 
 void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,
@@ -55,7 +63,14 @@ void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Para
       batch.label[at] = episode.labels[t];
       batch.taken[at] = episode.actions[t];
       batch.kind[at] = step_kind(state, episode.labels[t]);
-      batch.reward[at] = float(grid_step(maze, task, state, episode.actions[t]).reward_cents) / 100;
+      put_planner_q(world, episode.pair, state, int(at), batch);
+      const GridStep step = grid_step(maze, task, state, episode.actions[t]);
+      batch.reward[at] = float(step.reward_cents) / 100;
+      if (!batch.needs.next) continue;
+      if (step.terminated)
+        batch.next[at] = StepBatch<float>::kTerminal;
+      else if (t + 1 < episode.actions.size())
+        batch.next[at] = int(at) + 1;
     }
   });
 }
@@ -86,18 +101,39 @@ void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& runn
   }
 }
 
-void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
+GridStep RunningDraw::move_on(const ReplayMemory& memory, Running& running, int action) const {
   const GridEpisode* episode = followed(memory, running);
   running.following = episode && episode->actions[running.state.steps] == action;
   const GridStep step = grid_step(world_->maze(running.pair.env), world_->tasks()[running.pair.task], running.state, action);
   running.history.push(running.state.now);
-  if (step.ended() || running.state.steps >= options_.step_limit) restart(memory, running, number);
+  return step;
+}
+
+void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
+  if (move_on(memory, running, action).ended() || running.state.steps >= options_.step_limit) restart(memory, running, number);
+}
+
+// The step that takes `action` where the episode stands.
+GridStep RunningDraw::put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const {
+  Running after = running;
+  const GridStep step = move_on(memory, after, action);
+  int move;
+  label_and_move(memory, running, batch.label[at], move);
+  batch.env[at] = running.pair.env;
+  batch.task[at] = running.pair.task;
+  batch.taken[at] = action;
+  batch.reward[at] = float(step.reward_cents) / 100;
+  batch.kind[at] = step_kind(running.state, batch.label[at]);
+  put_planner_q(*world_, running.pair, running.state, at, batch);
+  draw_history(world_->maze(running.pair.env), running.history, window, batch.pictures.data() + size_t(at) * kPicture);
+  return step;
 }
 
 void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch) {
+  if (batch.needs.next) count = (count + 1) / 2;
   // Never fewer than a minibatch takes: an episode is drawn once.
   if (running_.size() < size_t(count)) running_.resize(std::max(options_.episodes, count), Running{});
-  batch.resize(count);
+  batch.resize(batch.needs.next ? 2 * count : count);
   drawn_.resize(count);
   moves_.resize(count);
   for (int i = 0; i < count; ++i) {
@@ -127,15 +163,15 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
         step(memory, running, number, move);
       }
       moves_[i] = move;
-      batch.env[i] = running.pair.env;
-      batch.task[i] = running.pair.task;
-      batch.label[i] = label;
-      batch.taken[i] = move;
-      batch.kind[i] = step_kind(running.state, label);
-      GridState after = running.state;
-      const Maze& maze = world_->maze(running.pair.env);
-      batch.reward[i] = float(grid_step(maze, world_->tasks()[running.pair.task], after, move).reward_cents) / 100;
-      draw_history(maze, running.history, window, batch.pictures.data() + size_t(i) * kPicture);
+      const GridStep step = put(memory, running, move, window, i, batch);
+      if (!batch.needs.next) continue;
+      // A last step stands twice, the second time with none behind it.
+      const int behind = count + i;
+      batch.next[i] = step.terminated ? StepBatch<float>::kTerminal : behind;
+      Running after = running;
+      if (!step.terminated) move_on(memory, after, move);
+      label_and_move(memory, after, label, move);
+      put(memory, after, move, window, behind, batch);
     }
   });
 }

@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "learn/memory.h"
+#include "policy/policy.h"
 #include "world/view.h"
 
 namespace synpo {
@@ -19,12 +20,16 @@ enum class StepKind : uint8_t { kMove, kPick, kWalkOn, kStart };
 constexpr int kStepKinds = 4;
 StepKind step_kind(const GridState& state, int label);
 
-// A minibatch under construction; arrays grow as needed.
+// A minibatch under construction; arrays grow as needed. Set `needs` before a draw.
 struct Minibatch {
   std::vector<uint8_t> pictures;  // [size, 16, 16, history]
   std::vector<int> env, task, label, taken;
   std::vector<float> reward;
   std::vector<StepKind> kind;
+  // Where asked for: StepBatch::next and planner_q.
+  BatchNeeds needs;
+  std::vector<int> next;
+  std::vector<float> planner_q;
   int size() const { return int(env.size()); }
   void resize(int size);
 };
@@ -51,7 +56,8 @@ class RunningDraw {
 
   // Takes over probabilities; the number of episodes stays.
   void set_options(const RunningOptions& options) { options_ = options; }
-  // The next `count` running episodes, each at its next step to be taken.
+  // The next `count` running episodes, each at its next step to be taken. Where the batch needs next steps, half as many, and the steps behind
+  // them, as the taken actions lead there.
   void draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch);
   // Moves the episodes of the last draw() on, given the learner's greedy actions [count].
   void advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update);
@@ -71,10 +77,12 @@ class RunningDraw {
     bool following;    // actions so far are the trajectory's
     bool started;
   };
+  GridStep put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const;
   void restart(const ReplayMemory& memory, Running& running, uint32_t number);
   // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.
   static const GridEpisode* followed(const ReplayMemory& memory, const Running& running);
   void label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const;
+  GridStep move_on(const ReplayMemory& memory, Running& running, int action) const;
   // One step; restarts where the episode ends.
   void step(const ReplayMemory& memory, Running& running, uint32_t number, int action);
 

@@ -35,6 +35,23 @@ void Perceptron<T>::backward(Parallel& parallel, const T* x, T* dy, T* dx, bool 
                     gradient + hidden_bias_);
 }
 
+template <class T>
+void Perceptron<T>::prepare_inference(const T* parameters) {
+  hidden_packed_.pack(Op::kAsIs, in_, hidden_, parameters + hidden_weight_, hidden_);
+  out_packed_.pack(Op::kAsIs, hidden_, out_, parameters + out_weight_, out_);
+  hidden_bias_values_.assign(parameters + hidden_bias_, parameters + hidden_bias_ + hidden_);
+  out_bias_values_.assign(parameters + out_bias_, parameters + out_bias_ + out_);
+}
+
+template <class T>
+void Perceptron<T>::infer(int rows, const T* x, T* y, Buffer<T>& scratch) const {
+  T* h = scratch.grow(size_t(rows) * hidden_);
+  gemm(Op::kAsIs, rows, x, in_, hidden_packed_, h, hidden_);
+  kernels<T>().add_bias(rows, hidden_, hidden_bias_values_.data(), true, h);
+  gemm(Op::kAsIs, rows, h, hidden_, out_packed_, y, out_);
+  kernels<T>().add_bias(rows, out_, out_bias_values_.data(), false, y);
+}
+
 template class Perceptron<float>;
 template class Perceptron<double>;
 

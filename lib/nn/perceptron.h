@@ -1,9 +1,10 @@
 // A dense layer with ReLU and a dense layer behind it, over rows: in -> hidden -> out.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "base/parallel.h"
-#include "nn/buffer.h"
+#include "nn/gemm.h"
 #include "nn/init.h"
 #include "nn/layout.h"
 
@@ -26,11 +27,17 @@ class Perceptron {
   // From dy, the gradient of the outputs: dx (may be null) = or, where add_dx, +=; the weights' gradients +=.
   void backward(Parallel& parallel, const T* x, T* dy, T* dx, bool add_dx, const T* parameters, T* gradient);
 
+  // Takes the weights over for infer(): y [rows, out] by one thread, to whom `scratch` belongs.
+  void prepare_inference(const T* parameters);
+  void infer(int rows, const T* x, T* y, Buffer<T>& scratch) const;
+
  private:
   int in_, hidden_, out_;
   size_t hidden_weight_, hidden_bias_, out_weight_, out_bias_;
   int rows_ = 0;
   Buffer<T> h_, dh_, y_;
+  Packed<T> hidden_packed_, out_packed_;  // for inference, with the biases
+  std::vector<T> hidden_bias_values_, out_bias_values_;
 };
 
 extern template class Perceptron<float>;

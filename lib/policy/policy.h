@@ -12,6 +12,9 @@
 
 namespace synpo {
 
+// How SF's successor features are learned: temporal differences along the expert, the planner's Q, or cross-entropy of Q as scores.
+enum class SfLoss { kTemporalDifference, kPlannerQ, kCrossEntropy };
+
 // Sizes of a policy (supplement, Section 4.1). The defaults are the paper's for GridWorld.
 struct PolicyShape {
   std::vector<int> channels = {32, 64, 128, 256};  // of the four stages of Table 2
@@ -23,6 +26,7 @@ struct PolicyShape {
   int action_embedding = 0;  // D of phi(a), general form; 0: the direct form
   int head_hidden = 1024;    // hidden units of the baselines' heads
   int seam = 32;             // ModuleNet: what a task's module hands to an environment's
+  SfLoss sf_loss = SfLoss::kTemporalDifference;
   bool normalise_input = false;       // per-channel batch normalisation without affine, in place of fixed scaling
   bool normalise_embeddings = false;  // embeddings are scaled to length sqrt(embedding) before use
 };
@@ -35,6 +39,8 @@ struct InitOptions {
 // The weights lambda of the auxiliary losses (supplement, Section 2).
 struct LossWeights {
   double reward = 0.01, env = 0.1, task = 0.001;
+  double dropout = 0;      // ModuleNet: probability that a value at the seam is left out
+  double discount = 0.99;  // SF: gamma
 };
 
 // Means over the steps of a batch; NaN where the method has no such loss. `total` is weighted.
@@ -57,7 +63,22 @@ struct StepBatch {
   const int* label = nullptr;  // the expert's action: imitation, disentanglement
   const int* taken = nullptr;  // the action taken, whose reward is to be predicted
   const T* reward = nullptr;
+  uint64_t seed = 0, update = 0;  // name the random numbers of this batch
+  // For methods that ask for it. The step behind this one: its place in the batch; or what a step has in its place.
+  static constexpr int kTerminal = -1;  // nothing comes behind it
+  static constexpr int kUnknown = -2;   // it is not in the batch
+  const int* next = nullptr;
+  const T* planner_q = nullptr;  // [size, actions], undiscounted return of each action under the planner
 };
+
+// What a method wants of a batch beyond the steps themselves.
+struct BatchNeeds {
+  bool next = false, planner_q = false;
+};
+
+// The temperature that a policy acts at where nothing else is said: with the best action alone, one that has learned most of its moves still
+// walks in circles where it has not.
+constexpr double kTemperature = 0.5;
 
 template <class T>
 class Policy {
@@ -65,6 +86,9 @@ class Policy {
   virtual ~Policy() = default;
   const Layout& parameters() const { return parameters_; }
   const Layout& statistics() const { return statistics_; }  // running statistics of batch normalisation
+  virtual BatchNeeds needs() const { return {}; }
+  // See kTemperature; 0 where scores are values, whose best action is taken.
+  virtual double temperature() const { return kTemperature; }
 
   virtual void initialise(const InitOptions& options, T* parameters, T* statistics) const = 0;
 

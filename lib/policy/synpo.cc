@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "nn/gemm.h"
-#include "nn/loss.h"
+#include "policy/head_losses.h"
 
 namespace synpo {
 namespace {
@@ -99,21 +99,21 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
     for (int h = 0; h < kHeads; ++h) form_.apply(composed_[h].data() + p * matrix, psi_.data() + i * d, q_[h].data() + i * columns);
   });
 
-  const int shards = shard_count(n, kRows);
-  T* dlogits = dlogits_.grow(size_t(n) * actions);
-  std::vector<double> loss(shards, 0);
-  parallel.run(shards, [&](int shard, int) {
-    const Range range = shard_range(n, kRows, shard);
-    const size_t at = size_t(range.begin) * actions, q_at = size_t(range.begin) * columns;
-    form_.scores(range.size(), q_[kPolicy].data() + q_at, parameters, logits + at);
-    kernels<T>().add_bias(range.size(), actions, parameters + bias_[kPolicy], false, logits + at);
-    for (int i = range.begin; i < range.end; ++i)
-      loss[shard] += cross_entropy(logits + size_t(i) * actions, actions, batch.label[i], T(1) / T(n), dlogits + size_t(i) * actions);
-    form_.scores_backward(range.size(), dlogits + at, parameters, dq_[kPolicy].data() + q_at);
+  const auto for_rows = [&](auto&& body) {
+    parallel.run(shard_count(n, kRows), [&](int shard, int) {
+      const Range range = shard_range(n, kRows, shard);
+      body(range.size(), size_t(range.begin) * columns, size_t(range.begin) * actions);
+    });
+  };
+  for_rows([&](int rows, size_t q_at, size_t at) {
+    form_.scores(rows, q_[kPolicy].data() + q_at, parameters, logits + at);
+    kernels<T>().add_bias(rows, actions, parameters + bias_[kPolicy], false, logits + at);
   });
-  form_.phi_backward(n, q_[kPolicy].data(), dlogits, gradient);
+  T* dlogits = dlogits_.grow(size_t(n) * actions);
   Losses losses;
-  for (const double part : loss) losses.policy += part / n;
+  losses.policy = policy_loss(parallel, n, actions, logits, batch.label, dlogits);
+  for_rows([&](int rows, size_t q_at, size_t at) { form_.scores_backward(rows, dlogits + at, parameters, dq_[kPolicy].data() + q_at); });
+  form_.phi_backward(n, q_[kPolicy].data(), dlogits, gradient);
   for (int i = 0; i < n; ++i) {
     for (int a = 0; a < actions; ++a) gradient[bias_[kPolicy] + a] += dlogits[size_t(i) * actions + a];
     const int a = batch.taken[i];

@@ -432,7 +432,7 @@ ImitationOptions from_command_line(std::vector<std::string> arguments) {
   argv.push_back(nullptr);
   options.parse(int(argv.size()) - 1, argv.data());
   EXPECT_EQ(recipe_options.given(), arguments.size() > 1);
-  return recipe_options.result();
+  return recipe_options.result("synpo");
 }
 
 TEST(Recipe, FromTheCommandLine) {
