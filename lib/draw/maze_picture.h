@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "draw/canvas.h"
+#include "draw/key.h"
 #include "world/maze.h"
 #include "world/task.h"
 
@@ -20,6 +21,9 @@ void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze);
 // A lettered square for a treasure, a ringed disc for the agent, in the middle of `box`.
 void draw_treasure(Canvas& canvas, const Box& box, int treasure);
 void draw_agent(Canvas& canvas, const Box& box);
+Sign treasure_sign(int treasure);
+// Where a cell lies in a maze drawn at (x, y).
+inline Box cell_box(int x, int y, int cell, int at) { return {x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}; }
 
 struct MapStyle {
   std::string title;
