@@ -112,7 +112,9 @@ int body(int argc, char** argv) {
                       {{"heatmap", "a success matrix", heatmap},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes", map},
-                       {"view", "what the agent sees", view}},
+                       {"view", "what the agent sees", view},
+                       {"episode", "a trajectory as a path through its maze", episode},
+                       {"embedding", "a checkpoint's environments and tasks", embedding}},
                       argc, argv);
 }
 

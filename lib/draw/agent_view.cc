@@ -16,7 +16,7 @@ constexpr double kCellPt = 13, kBetweenPt = 24, kMarginPt = 12, kTextPt = 9, kTi
 constexpr Rgb kWindow = {0, 150, 160};
 
 void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment, int radius) {
-  const auto box = [&](int at) { return cell_box(x, y, cell, at); };
+  const auto box = [&](int at) { return MazePlace{x, y, cell}.box(at); };
   const GridFrame& now = moment.state.now;
   draw_maze(canvas, x, y, cell, moment.maze);
   for (int i = 0; i < kTreasures; ++i)
@@ -56,7 +56,7 @@ void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const G
   uint8_t colours[kGridCells] = {};
   if (frame) draw_view(maze, *frame, radius, colours);
   for (int at = 0; at < kGridCells; ++at)
-    canvas.fill(cell_box(x, y, cell, at), kPalette[colours[at]]);
+    canvas.fill(MazePlace{x, y, cell}.box(at), kPalette[colours[at]]);
 }
 
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps) {

@@ -1,14 +1,11 @@
 #include "draw/heading.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "draw/colour.h"
 
 namespace synpo {
 
 Heading::Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font) {
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  const Pixels px{scale};
   title_size_ = px(12);
   title_line_ = px(17);
   caption_size_ = px(8.5);

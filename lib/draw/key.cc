@@ -1,8 +1,5 @@
 #include "draw/key.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "draw/colour.h"
 
 namespace synpo {
@@ -15,7 +12,7 @@ Sign colour_sign(Rgb colour) {
 }
 
 Key::Key(std::vector<KeyEntry> entries, int width, double scale, const Font& font) : entries_(std::move(entries)) {
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  const Pixels px{scale};
   sign_ = px(11);
   space_ = px(3);
   before_name_ = px(2);
