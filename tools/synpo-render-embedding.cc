@@ -52,7 +52,7 @@ int embedding(int argc, char** argv) {
   Options options("synpo-render embedding", "[OPTION]... [CHECKPOINT]", "Draws a checkpoint's embeddings of environments and of tasks side by side.");
   options.call(0, "kind", "KIND", "pca: two principal components; distance: matrices [pca]", one_of(kind, "pca", "distance"))
       .call(0, "metric", "NAME", "distances: cosine or euclidean [cosine]", one_of(metric, "cosine", "euclidean"))
-      .flag(0, "all", "environments and tasks of no seen pair too, whose embeddings were not trained", all)
+      .flag(0, "all", "environments and tasks of no seen pair too", all)
       .text(0, "title", "TEXT", "title above the picture", style.title);
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
@@ -79,9 +79,10 @@ int embedding(int argc, char** argv) {
   std::vector<Embeddings> panels = {read_embeddings(model, "embedding.env", "environments", envs),
                                     read_embeddings(model, "embedding.task", "tasks", tasks)};
   for (const Row& row : tasks) panels[1].tasks.push_back(world.tasks()[row.index]);
-  style.caption = concat(kind == "pca" ? "principal components" : metric == "cosine" ? "cosine distance (darker: nearer)" : "Euclidean distance (darker: nearer)", " of the embeddings of ",
-                         count_text(envs.size(), world.envs()), " environments and ", count_text(tasks.size(), world.task_count()), " tasks, size ",
-                         model.shape.embedding, "; ", model.method, ", ", model.updates, " updates; a task's mark: left its first treasure, right its second");
+  const char* what = kind == "pca" ? "principal components" : metric == "cosine" ? "cosine distance" : "Euclidean distance";
+  style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", count_text(envs.size(), world.envs()),
+                         " environments and ", count_text(tasks.size(), world.task_count()), " tasks, size ", model.shape.embedding, "; ",
+                         model.method, ", ", model.updates, " updates; a task's mark: left its first treasure, right its second");
   const Font font(picture.font);
   if (kind == "pca")
     finish(output, draw_embedding_map(panels, style, font));

@@ -26,7 +26,7 @@ GridState second_stage(const Task& task, GridState state) {
 // What the agent remembers in a cell.
 std::string history_text(int pictures) {
   if (pictures == 1) return "the agent stands in each cell as at the first step of an episode, with no picture from before";
-  return concat("it stands in each cell and did so in all of the last ", pictures, " pictures");
+  return concat("the agent stands in each cell and did so in all of the last ", pictures, " pictures");
 }
 
 }  // namespace

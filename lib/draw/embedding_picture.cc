@@ -17,7 +17,8 @@ namespace synpo {
 namespace {
 
 constexpr double kMarginPt = 12, kBetweenPt = 22, kPanelTitlePt = 10, kNamePt = 7.5, kSmallestPt = 4.5;
-constexpr double kPlotPt = 270, kMatrixPt = 300, kLargestCellPt = 30, kBarPt = 9;
+constexpr double kPlotPt = 270, kMatrixPt = 300, kLargestCellPt = 30, kBarPt = 9, kBarTextPt = 8.5;
+constexpr int kMostTicks = 8;
 constexpr Rgb kDot = {0, 114, 178};
 
 void check(const std::vector<Embeddings>& panels) {
@@ -74,7 +75,7 @@ void draw_scores(Canvas& canvas, const Box& plot, const Embeddings& panel, const
 
 // Sizes of one matrix of distances, in pixels.
 struct MatrixPlan {
-  int cell, name_size, names, marker, value_size;  // `names`: room for the longest
+  int cell, name_size, names, marker, value_size, bar_labels;  // `names` and `bar_labels`: room for the longest
   std::vector<double> values;
   Axis bar;
   int side(const Embeddings& panel) const { return cell * int(panel.names.size()); }
@@ -96,7 +97,9 @@ MatrixPlan plan_matrix(const Embeddings& panel, Distance kind, const Pixels& px,
       low = std::min(low, plan.values[i]);
       high = std::max(high, plan.values[i]);
     }
-  plan.bar = value_axis("", low, high, 8);
+  plan.bar = high > 0 ? value_axis("", low, high, kMostTicks) : Axis{0, 1, 1, ""};
+  const Ticks ticks = plan.bar.ticks(kMostTicks);
+  for (const double at : ticks.at) plan.bar_labels = std::max(plan.bar_labels, font.width(plan.bar.label(at, ticks), px(kBarTextPt)));
   plan.value_size = px(kNamePt);
   while (plan.value_size >= px(kSmallestPt) && font.width("0.88", plan.value_size) > plan.cell - px(2)) --plan.value_size;
   if (plan.value_size < px(kSmallestPt)) plan.value_size = 0;
@@ -132,11 +135,11 @@ void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const
   const Box bar = {left + side + px(10), y, px(kBarPt), side};
   for (int row = 0; row < bar.height; ++row)
     canvas.fill({bar.x, bar.y + row, bar.width, 1}, distance_colour(1 - double(row) / std::max(1, bar.height - 1)));
-  const Ticks ticks = plan.bar.ticks(8);
+  const Ticks ticks = plan.bar.ticks(kMostTicks);
   for (const double at : ticks.at) {
     const int tick = bar.bottom() - int(std::lround(plan.bar.place(at) * bar.height));
     canvas.fill({bar.right(), tick, px(3), px(0.6)}, kSoftInk);
-    canvas.text(bar.right() + px(5), tick, plan.bar.label(at, ticks), px(8.5), kInk, Across::kLeft, Upright::kMiddle);
+    canvas.text(bar.right() + px(5), tick, plan.bar.label(at, ticks), px(kBarTextPt), kInk, Across::kLeft, Upright::kMiddle);
   }
 }
 
@@ -187,7 +190,7 @@ Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance 
   int inside = px(kBetweenPt) * (int(panels.size()) - 1), height = 0;
   for (const Embeddings& panel : panels) {
     const MatrixPlan plan = plan_matrix(panel, kind, px, font);
-    widths.push_back(plan.before() + plan.side(panel) + px(10) + px(kBarPt) + px(5) + font.width("0.888", px(8.5)));
+    widths.push_back(plan.before() + plan.side(panel) + px(10) + px(kBarPt) + px(5) + plan.bar_labels);
     inside += widths.back();
     height = std::max(height, plan.side(panel) + px(3) + plan.before());
     plans.push_back(plan);

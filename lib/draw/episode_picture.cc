@@ -15,7 +15,7 @@ namespace synpo {
 namespace {
 
 constexpr double kCellPt = 20, kFrameCellPt = 13, kMarginPt = 12, kTextPt = 9, kSmallTextPt = 7.5;
-constexpr int kStripColumns = 6;
+constexpr int kMostColumns = 6;
 constexpr Rgb kWrong = {200, 0, 0};
 
 std::string name_of(const Film& film) { return film.maze.name + ", task " + film.task.name(); }
@@ -51,11 +51,14 @@ std::array<int, kGridCells> moments_in(const std::vector<uint8_t>& cells) {
   return moments;
 }
 
+// Size of the text for it; 0 where it could not be read.
+int count_size(int cell) { return cell / 3 < 8 ? 0 : cell / 3; }
+
 // How many moments the agent was there, in a corner of the cells where the path cannot tell.
 void draw_counts(Canvas& canvas, const MazePlace& place, const std::vector<uint8_t>& cells) {
   const auto moments = moments_in(cells);
-  const int size = place.cell / 3;
-  if (size < 8) return;
+  const int size = count_size(place.cell);
+  if (size == 0) return;
   for (int cell = 0; cell < kGridCells; ++cell) {
     if (moments[cell] <= kPathLanes) continue;
     const Box box = place.box(cell);
@@ -109,7 +112,11 @@ void draw_time_bar(Canvas& canvas, const Box& bar, const Film& film, const Pixel
   canvas.text(bar.x - (sign - bar.width) / 2, bar.y - px(14), "step", text, kSoftInk);
 }
 
-std::vector<KeyEntry> key_entries(const Film& film) {
+void draw_count_sign(Canvas& canvas, const Box& box) {
+  canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight, Upright::kMiddle);
+}
+
+std::vector<KeyEntry> key_entries(const Film& film, int cell) {
   std::vector<KeyEntry> key = {{{draw_start}, "start"}};
   if (!film.results.back().terminated) key.push_back({{draw_agent}, "end"});
   key.push_back({{treasure_sign(film.task.first)}, "pick first"});
@@ -117,11 +124,8 @@ std::vector<KeyEntry> key_entries(const Film& film) {
   if (film.states.back().picked > 0) key.push_back({{draw_picked}, "picked"});
   if (film.results.back().wrong_pick) key.push_back({{draw_wrong}, "wrong pick"});
   const auto moments = moments_in(cells_up_to(film, film.steps()));
-  if (*std::max_element(moments.begin(), moments.end()) > kPathLanes)
-    key.push_back({{[](Canvas& canvas, const Box& box) {
-                     canvas.text(box.x + box.width, box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight, Upright::kMiddle);
-                   }},
-                   "the agent was here so many times"});
+  if (count_size(cell) > 0 && *std::max_element(moments.begin(), moments.end()) > kPathLanes)
+    key.push_back({{draw_count_sign}, "moments in this cell"});
   return key;
 }
 
@@ -130,7 +134,8 @@ class Strip {
  public:
   Strip(const Film& film, int64_t count, int width, const Pixels& px)
       : film_(film), moments_(count > 0 ? key_moments(film, int(count)) : std::vector<int>()), px_(px), gap_(px(8)), line_(px(1.5)),
-        cell_(((width + gap_) / kStripColumns - gap_ - 2 * line_) / kGridSide), columns_gap_((width - kStripColumns * side()) / (kStripColumns - 1)) {}
+        cell_(std::max(1, ((width + gap_) / kMostColumns - gap_ - 2 * line_) / kGridSide)), columns_(std::min(kMostColumns, (width + gap_) / (side() + gap_))),
+        columns_gap_((width - columns_ * side()) / (columns_ - 1)) {}
 
   int height() const { return moments_.empty() ? 0 : heading() + rows() * row_height() - px_(6); }
 
@@ -139,7 +144,7 @@ class Strip {
     const std::string window = concat(2 * film_.radius + 1, " x ", 2 * film_.radius + 1);
     canvas.text(x, y, concat("what the agent saw as it took these steps, window ", window), px_(kTextPt), kSoftInk);
     for (size_t i = 0; i < moments_.size(); ++i) {
-      const int left = x + int(i) % kStripColumns * (side() + columns_gap_), top = y + heading() + int(i) / kStripColumns * row_height();
+      const int left = x + int(i) % columns_ * (side() + columns_gap_), top = y + heading() + int(i) / columns_ * row_height();
       const GridFrame& seen = film_.states[moments_[i]].now;
       canvas.fill({left, top, side(), side()}, colour_of_step(film_, moments_[i] + 1));
       draw_seen(canvas, left + line_, top + line_, cell_, film_.maze, &seen, film_.radius);
@@ -152,13 +157,13 @@ class Strip {
 
  private:
   int side() const { return cell_ * kGridSide + 2 * line_; }
-  int rows() const { return (int(moments_.size()) + kStripColumns - 1) / kStripColumns; }
+  int rows() const { return (int(moments_.size()) + columns_ - 1) / columns_; }
   int row_height() const { return side() + px_(4) + px_(kSmallTextPt) + px_(6); }
   int heading() const { return px_(kTextPt) + px_(7); }
   const Film& film_;
   std::vector<int> moments_;
   Pixels px_;
-  int gap_, line_, cell_, columns_gap_;
+  int gap_, line_, cell_, columns_, columns_gap_;
 };
 
 }  // namespace
@@ -168,7 +173,7 @@ Canvas draw_episode(const Film& film, const EpisodeStyle& style, const Font& fon
   const int margin = px(kMarginPt), side = kGridSide * px(kCellPt), bar_gap = px(14), bar_width = px(9);
   const int inside = side + bar_gap + bar_width + px(5) + font.width("300", px(kTextPt));
   const Heading heading(style.title.empty() ? name_of(film) : style.title, describe(film), inside, style.scale, font);
-  const Key key(key_entries(film), inside, style.scale, font);
+  const Key key(key_entries(film, px(kCellPt)), inside, style.scale, font);
   const Strip strip(film, style.strip, inside, px);
 
   const int maze_y = margin + heading.height() + px(4), key_y = maze_y + side + px(12), strip_y = key_y + key.height() + px(14);

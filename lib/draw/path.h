@@ -12,8 +12,8 @@ Rgb time_colour(double share);
 
 constexpr int kPathLanes = 5;
 
-// The corners of the way, in pixels. Ways that pass the same border of two cells again run beside one another, in up to kPathLanes lanes; `cells` is where
-// the agent was at every moment.
+// The corners of the way, in pixels. Ways that pass the same border of two cells again run beside one another, in up to kPathLanes
+// lanes; `cells` is where the agent was at every moment.
 struct PathCorner {
   Point at;
   int step;  // the number of the step, from 1, that leads here; 0 at the start

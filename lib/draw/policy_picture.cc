@@ -143,7 +143,8 @@ PolicyStage compare_to_planner(const Maze& maze, const Planner& planner, const T
   return stage;
 }
 
-Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages, const PolicyPictureStyle& style, const Font& font) {
+Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages, const PolicyPictureStyle& style,
+                   const Font& font) {
   const Pixels px{style.scale};
   const int margin = px(kMarginPt), cell = px(kCellPt), side = kGridSide * cell, between = px(kBetweenPt), title = px(kPanelTitlePt);
   const int count = int(stages.size()), inside = count * side + (count - 1) * between;

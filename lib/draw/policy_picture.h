@@ -37,6 +37,7 @@ struct PolicyPictureStyle {
 };
 
 // The stages side by side.
-Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages, const PolicyPictureStyle& style, const Font& font);
+Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages, const PolicyPictureStyle& style,
+                   const Font& font);
 
 }  // namespace synpo

@@ -19,7 +19,8 @@ ActionRates softmax(const float* scores) {
 
 }  // namespace
 
-std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world, EnvTask pair, const GridState& state, int window, int pictures_each) {
+std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world, EnvTask pair, const GridState& state, int window,
+                                     int pictures_each) {
   constexpr size_t kMost = Policy<float>::kInferenceUnit, kPicture = size_t(kGridCells) * kHistory;
   const Maze& maze = world.maze(pair.env);
   std::vector<uint8_t> pictures(kMost * kPicture);
