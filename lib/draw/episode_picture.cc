@@ -51,7 +51,7 @@ std::array<int, kGridCells> moments_in(const std::vector<uint8_t>& cells) {
   return moments;
 }
 
-// Size of the text for it; 0 where it could not be read.
+// Size of the numbers in the cells; 0 where they could not be read.
 int count_size(int cell) { return cell / 3 < 8 ? 0 : cell / 3; }
 
 // How many moments the agent was there, in a corner of the cells where the path cannot tell.
