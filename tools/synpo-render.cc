@@ -1,4 +1,4 @@
-// synpo-render: matrices, curves, mazes and views as PNG pictures.
+// synpo-render: matrices, curves, mazes, views, episodes, embeddings and policies as PNG pictures.
 #include "synpo-render.h"
 
 #include <algorithm>
@@ -108,11 +108,14 @@ int view(int argc, char** argv) {
 }
 
 int body(int argc, char** argv) {
-  return run_commands("synpo-render", "Draws success matrices, learning curves, mazes and views as PNG.",
+  return run_commands("synpo-render", "Draws success matrices, learning curves, mazes, views, episodes, embeddings and policies as PNG.",
                       {{"heatmap", "a success matrix", heatmap},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes", map},
-                       {"view", "what the agent sees", view}},
+                       {"view", "what the agent sees", view},
+                       {"episode", "a trajectory as a path through its maze", episode},
+                       {"embedding", "a checkpoint's environments and tasks", embedding},
+                       {"policy", "what a checkpoint does in every cell, against the planner", policy}},
                       argc, argv);
 }
 

@@ -27,3 +27,6 @@ inline void finish(synpo::Output& output, const synpo::Canvas& canvas) {
 }
 
 int curves(int argc, char** argv);
+int embedding(int argc, char** argv);
+int episode(int argc, char** argv);
+int policy(int argc, char** argv);

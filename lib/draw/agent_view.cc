@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "base/error.h"
 #include "draw/colour.h"
+#include "draw/key.h"
 #include "draw/maze_picture.h"
 #include "world/planner.h"
 
@@ -15,16 +15,8 @@ namespace {
 constexpr double kCellPt = 13, kBetweenPt = 24, kMarginPt = 12, kTextPt = 9, kTitlePt = 12;
 constexpr Rgb kWindow = {0, 150, 160};
 
-// What the agent sees, cell for cell in the colours of the network's input.
-void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const GridFrame* frame, int radius) {
-  uint8_t colours[kGridCells] = {};
-  if (frame) draw_view(maze, *frame, radius, colours);
-  for (int at = 0; at < kGridCells; ++at)
-    canvas.fill({x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}, kPalette[colours[at]]);
-}
-
 void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment, int radius) {
-  const auto box = [&](int at) { return Box{x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}; };
+  const auto box = [&](int at) { return MazePlace{x, y, cell}.box(at); };
   const GridFrame& now = moment.state.now;
   draw_maze(canvas, x, y, cell, moment.maze);
   for (int i = 0; i < kTreasures; ++i)
@@ -36,33 +28,20 @@ void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment
   canvas.frame({x + left * cell, y + top * cell, (right - left + 1) * cell, (bottom - top + 1) * cell}, std::max(2, cell / 7), kWindow);
 }
 
-// A line of the key: how a thing is drawn in the maze, how in the agent's picture, and its name.
-struct KeyEntry {
-  std::function<void(Canvas&, const Box&)> sign;  // none: it is not in the maze
-  GridColour seen;
-  bool has_seen;
-  std::string name;
-};
-
 std::vector<KeyEntry> key_entries(const ViewMoment& moment) {
   std::vector<KeyEntry> key;
-  const auto filled = [](Rgb colour) {
-    return [colour](Canvas& canvas, const Box& box) {
-      canvas.fill(box, colour);
-      canvas.frame(box, 1, kHairline);
-    };
-  };
-  key.push_back({[](Canvas& canvas, const Box& box) { draw_agent(canvas, box); }, kAgent, true, "agent"});
+  const auto seen = [](int colour) { return colour_sign(kPalette[colour]); };
+  key.push_back({{draw_agent, seen(kAgent)}, "agent"});
   for (int i = 0; i < kTreasures; ++i) {
     const int place = i == moment.task.first ? 1 : i == moment.task.second ? 2 : 0;
     std::string name = kTreasureNames[i];
     if (place) name += moment.state.picked >= place ? " (picked)" : place == 1 ? " (pick first)" : " (pick second)";
-    key.push_back({[i](Canvas& canvas, const Box& box) { draw_treasure(canvas, box, i); }, GridColour(kFirstTreasure + i), true, name});
+    key.push_back({{treasure_sign(i), seen(kFirstTreasure + i)}, name});
   }
-  key.push_back({filled(kPaperWall), kWall, true, "wall"});
-  key.push_back({filled(kPaperFloor), kFloor, true, "floor"});
-  key.push_back({nullptr, kUnseen, true, "not seen"});
-  key.push_back({[](Canvas& canvas, const Box& box) { canvas.frame(box, std::max(2, box.width / 7), kWindow); }, kUnseen, false, "window"});
+  key.push_back({{colour_sign(kPaperWall), seen(kWall)}, "wall"});
+  key.push_back({{colour_sign(kPaperFloor), seen(kFloor)}, "floor"});
+  key.push_back({{seen(kUnseen)}, "not seen"});
+  key.push_back({{[](Canvas& canvas, const Box& box) { canvas.frame(box, std::max(2, box.width / 7), kWindow); }}, "window"});
   return key;
 }
 
@@ -72,6 +51,13 @@ std::string words(const ViewMoment& moment) {
 }
 
 }  // namespace
+
+void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const GridFrame* frame, int radius) {
+  uint8_t colours[kGridCells] = {};
+  if (frame) draw_view(maze, *frame, radius, colours);
+  for (int at = 0; at < kGridCells; ++at)
+    canvas.fill(MazePlace{x, y, cell}.box(at), kPalette[colours[at]]);
+}
 
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps) {
   const Planner planner(maze);
@@ -98,24 +84,11 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
   const int small = small_cell * kGridSide;
   const int history_height = style.history ? px(14) + heading + small + px(6) + text : 0;
 
-  const std::vector<KeyEntry> key = key_entries(moment);
-  const int sign = px(11), key_line = sign + px(7), key_between = px(18);
-  struct Place {
-    int x, y;
-  };
-  std::vector<Place> places;
-  Place next = {margin, 0};
-  for (const KeyEntry& entry : key) {
-    const int entry_width = (entry.sign ? sign + px(3) : 0) + (entry.has_seen ? sign + px(3) : 0) + px(2) + font.width(entry.name, text);
-    if (next.x > margin && next.x + entry_width > width - margin) next = {margin, next.y + key_line};
-    places.push_back(next);
-    next.x += entry_width + key_between;
-  }
-
+  const Key key(key_entries(moment), width - 2 * margin, style.scale, font);
   const std::vector<std::string> title = font.wrapped(style.title.empty() ? words(moment) : style.title, title_size, width - 2 * margin);
   const int headings_y = margin + int(title.size()) * title_line + px(5), panels_y = headings_y + heading;
   const int key_y = panels_y + side + history_height + px(14);
-  Canvas canvas(width, key_y + next.y + sign + margin, font);
+  Canvas canvas(width, key_y + key.height() + margin, font);
 
   for (size_t i = 0; i < title.size(); ++i) canvas.text(margin, margin + int(i) * title_line, title[i], title_size, kInk);
   const int window = 2 * style.radius + 1;
@@ -136,20 +109,7 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
     }
   }
 
-  for (size_t i = 0; i < key.size(); ++i) {
-    int x = places[i].x;
-    const int y = key_y + places[i].y;
-    if (key[i].sign) {
-      key[i].sign(canvas, {x, y, sign, sign});
-      x += sign + px(3);
-    }
-    if (key[i].has_seen) {
-      canvas.fill({x, y, sign, sign}, kPalette[key[i].seen]);
-      canvas.frame({x, y, sign, sign}, 1, kHairline);
-      x += sign + px(3);
-    }
-    canvas.text(x + px(2), y + sign / 2, key[i].name, text, kInk, Across::kLeft, Upright::kMiddle);
-  }
+  key.draw(canvas, margin, key_y);
   return canvas;
 }
 

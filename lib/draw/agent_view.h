@@ -22,6 +22,9 @@ struct ViewMoment {
 // The start of the episode that `random` draws, followed by `steps` steps of the expert. Throws kUsage when its episode is shorter.
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps);
 
+// What the agent sees, cell for cell in the colours of the network's input, `cell` pixels a cell; nullptr: nothing, all black.
+void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const GridFrame* frame, int radius);
+
 struct ViewStyle {
   int radius = 1;
   bool history = false;  // the four pictures that the network gets, in a row beneath

@@ -1,5 +1,7 @@
 // A picture to draw on: filled shapes and text in pixels, anti-aliased; PNG bytes out.
 #pragma once
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -18,6 +20,12 @@ struct Box {
 
 struct Point {
   double x, y;
+};
+
+// Points to pixels: at least one.
+struct Pixels {
+  double scale;
+  int operator()(double pt) const { return std::max(1, int(std::lround(pt * scale))); }
 };
 
 // How much of each pixel of the box something covers, 0 to 255.

@@ -20,7 +20,7 @@ void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze) {
       canvas.fill({x, y + i * cell - line / 2, kGridSide * cell, line}, kPaperGrid);
     }
   for (int at = 0; at < kGridCells; ++at)
-    if (maze.wall[at]) canvas.fill({x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}, kPaperWall);
+    if (maze.wall[at]) canvas.fill(MazePlace{x, y, cell}.box(at), kPaperWall);
 }
 
 void draw_treasure(Canvas& canvas, const Box& box, int treasure) {
@@ -38,6 +38,10 @@ void draw_agent(Canvas& canvas, const Box& box) {
   canvas.disc(centre, radius, kPaper);
   canvas.disc(centre, radius * 0.86, kPaperAgent);
   canvas.disc(centre, radius * 0.36, kPaper);
+}
+
+Sign treasure_sign(int treasure) {
+  return [treasure](Canvas& canvas, const Box& box) { draw_treasure(canvas, box, treasure); };
 }
 
 Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Font& font) {

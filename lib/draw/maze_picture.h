@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "draw/canvas.h"
+#include "draw/key.h"
 #include "world/maze.h"
 #include "world/task.h"
 
@@ -15,11 +16,19 @@ constexpr Rgb kPaperWall = {62, 70, 82}, kPaperFloor = {250, 249, 245}, kPaperGr
 extern const std::array<Rgb, kTreasures> kPaperTreasures;
 extern const char* const kTreasureNames[kTreasures];
 
+// Where a maze is drawn: its top left corner, and pixels a cell.
+struct MazePlace {
+  int x, y, cell;
+  Box box(int at) const { return {x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}; }
+  Point centre(int at) const { return {x + (at % kGridSide + 0.5) * cell, y + (at / kGridSide + 0.5) * cell}; }
+};
+
 // The maze with its top left corner at (x, y), `cell` pixels a cell.
 void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze);
 // A lettered square for a treasure, a ringed disc for the agent, in the middle of `box`.
 void draw_treasure(Canvas& canvas, const Box& box, int treasure);
 void draw_agent(Canvas& canvas, const Box& box);
+Sign treasure_sign(int treasure);
 
 struct MapStyle {
   std::string title;

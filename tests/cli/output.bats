@@ -27,6 +27,10 @@ for_writers() {
     "$1" synpo-render curves run.log
     "$1" synpo-render map
     "$1" synpo-render view
+    "$1" synpo-render episode e.jsonl
+    "$1" synpo-render episode --ansi e.jsonl
+    "$1" synpo-render embedding a.ckpt
+    "$1" synpo-render policy a.ckpt
 }
 
 @test "a full disk: 74 and a message, from every command" {
@@ -122,7 +126,7 @@ for_writers() {
 
 @test "binary output to a terminal is refused with 64, and before the work; -f forces it" {
     for command in "synpo-train -q -n 3 <two.tsv" "synpo-render map" "synpo-render heatmap m.tsv" "synpo-render curves run.log" \
-        "synpo-render view"; do
+        "synpo-render view" "synpo-render episode e.jsonl" "synpo-render embedding a.ckpt" "synpo-render policy a.ckpt"; do
         run -64 on_terminal "$command"
         says "standard output is a terminal and the output is binary: use -o FILE, or -f to force it"
     done
@@ -132,7 +136,7 @@ for_writers() {
 
 @test "where a stream is expected a terminal is refused with 64" {
     for command in "synpo-train -n 1 >x" "synpo-eval >x" "synpo-gen-expert --relabel" "synpo-matrix summary" "synpo-matrix merge" \
-        "synpo-render heatmap >x" "synpo-render curves >x"; do
+        "synpo-render heatmap >x" "synpo-render curves >x" "synpo-render episode >x" "synpo-render embedding >x" "synpo-render policy >x"; do
         status=0
         timeout 20 script -qec "$command" /dev/null </dev/null >"$BATS_TEST_TMPDIR/err" || status=$?
         [ "$status" -eq 64 ] || complain "$command: exit code $status: $(cat "$BATS_TEST_TMPDIR/err")"

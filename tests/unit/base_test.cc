@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/folder.h"
 #include "base/hash.h"
 #include "base/io.h"
 #include "base/options.h"
@@ -203,6 +204,38 @@ TEST(Output, LeavesNothingBehindWhenUnfinished) {
   } catch (const std::runtime_error&) {
   }
   EXPECT_EQ(folder.files(), 0u);
+}
+
+TEST(OutputFolder, IsWholeOrNotThere) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("pictures");
+  { OutputFolder(path).write("1", "one"); }
+  EXPECT_EQ(folder.files(), 0u);
+  OutputFolder output(path + "/");
+  output.write("1", "one");
+  output.write("2", "two");
+  EXPECT_FALSE(std::filesystem::exists(path));
+  output.finish();
+  EXPECT_EQ(contents(path + "/1") + contents(path + "/2"), "onetwo");
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(OutputFolder, TakesTheNameOfAnEmptyFolderAndOfNothingElse) {
+  const TemporaryFolder folder;
+  std::filesystem::create_directory(folder.file("empty"));
+  OutputFolder output(folder.file("empty"));
+  output.write("1", "one");
+  output.finish();
+  folder.file("file", "text");
+  for (const std::string& path : {folder.file("empty"), folder.file("file"), folder.file("missing/x"), std::string()}) {
+    try {
+      OutputFolder refused(path);
+      ADD_FAILURE() << path;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), Exit::kCantCreate) << path;
+    }
+  }
+  EXPECT_EQ(folder.files(), 2u);
 }
 
 TEST(Output, AFullDiskIsAnError) {

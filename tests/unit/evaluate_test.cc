@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 
 #include "base/hash.h"
 #include "episodes.h"
+#include "learn/probe.h"
 #include "nn/loss.h"
+#include "world/view.h"
 
 namespace synpo {
 namespace {
@@ -234,6 +237,38 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
 
 TEST(Evaluate, NoEpisodesIsNoWork) {
   for (const PairResult& result : run(hashed, {}, 2)) EXPECT_TRUE(same(result, {}));
+}
+
+// Scores by the agent's cell and the number of pictures: an input is the same as what a running episode would give.
+TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
+  const EnvTask pair = {3, 7};
+  const Maze& maze = builtin_world().maze(pair.env);
+  GridState state = episode_start(builtin_world(), pair, 5, Purpose::kEpisodeStart, 0);
+  for (const int pictures_each : {1, 2, kHistory}) {
+    FunctionPolicy policy(hashed);
+    const std::vector<ActionRates> rates = probe_cells(policy, builtin_world(), pair, state, 1, pictures_each);
+    ASSERT_EQ(rates.size(), maze.free_cells.size());
+    for (size_t i = 0; i < rates.size(); ++i) {
+      state.now.agent = maze.free_cells[i];
+      GridHistory history;
+      for (int k = 0; k < pictures_each; ++k) history.push(state.now);
+      uint8_t pictures[kGridCells * kHistory];
+      draw_history(maze, history, 1, pictures);
+      float scores[kGridActions];
+      hashed(pictures, 0, scores);
+      EXPECT_NEAR(std::accumulate(rates[i].begin(), rates[i].end(), 0.0), 1, 1e-12);
+      EXPECT_EQ(std::max_element(rates[i].begin(), rates[i].end()) - rates[i].begin(), argmax(scores, kGridActions)) << i;
+    }
+  }
+}
+
+TEST(Probe, ProbabilitiesAreTheSoftmaxOfTheScores) {
+  FunctionPolicy policy(always<kLeft>);
+  const GridState state = episode_start(builtin_world(), {0, 0}, 5, Purpose::kEpisodeStart, 0);
+  for (const ActionRates& rates : probe_cells(policy, builtin_world(), {0, 0}, state, 1, 1)) {
+    EXPECT_NEAR(rates[kLeft], std::exp(1) / (std::exp(1) + 4), 1e-12);
+    EXPECT_NEAR(rates[kPick], 1 / (std::exp(1) + 4), 1e-12);
+  }
 }
 
 }  // namespace

@@ -1,0 +1,107 @@
+#include "draw/path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "draw/colour.h"
+#include "draw/stroke.h"
+
+namespace synpo {
+namespace {
+
+constexpr double kLaneShare = 0.15, kLineShare = 0.09, kCasingShare = 0.15;  // of a cell
+constexpr int kArrowEvery = 3;
+
+// A step that moves: its direction, and how far its lane lies beside the middle, to the right of rising rows and columns.
+struct Move {
+  int step;
+  Point direction, aside;
+};
+
+std::vector<Move> moves_of(const std::vector<uint8_t>& cells, double cell) {
+  std::map<std::pair<int, int>, int> passed;
+  std::vector<Move> moves;
+  for (size_t i = 1; i < cells.size(); ++i) {
+    const int from = cells[i - 1], to = cells[i];
+    if (from == to) continue;
+    const int lane = passed[std::minmax(from, to)]++ % kPathLanes;
+    const double offset = (lane % 2 ? 1 : -1) * ((lane + 1) / 2) * kLaneShare * cell;
+    const double dx = to % kGridSide - from % kGridSide, dy = to / kGridSide - from / kGridSide;
+    moves.push_back({int(i), {dx, dy}, {std::abs(dy) * offset, std::abs(dx) * offset}});
+  }
+  return moves;
+}
+
+void draw_arrowhead(Canvas& canvas, Point tip, Point direction, double size, Rgb colour) {
+  const Point back = {tip.x - direction.x * size, tip.y - direction.y * size};
+  const Point across = {-direction.y * size * 0.6, direction.x * size * 0.6};
+  canvas.polygon({tip, {back.x + across.x, back.y + across.y}, {back.x - across.x, back.y - across.y}}, colour);
+}
+
+void draw_piece(Canvas& canvas, Point a, Point b, double width, Rgb colour) {
+  const int reach = int(std::ceil(width)) + 1;
+  const int left = int(std::floor(std::min(a.x, b.x))) - reach, top = int(std::floor(std::min(a.y, b.y))) - reach;
+  const Box around = {left, top, int(std::ceil(std::max(a.x, b.x))) + reach - left, int(std::ceil(std::max(a.y, b.y))) + reach - top};
+  canvas.paint(stroke_mask({a, b}, width, {}, around), colour);
+}
+
+}  // namespace
+
+Rgb time_colour(double share) {
+  share = std::clamp(share, 0.0, 1.0);
+  return ramp_colour({90 + 215 * share, 0.15}, 0.22 + 0.78 * share);
+}
+
+std::vector<PathCorner> path_corners(const MazePlace& place, const std::vector<uint8_t>& cells) {
+  const std::vector<Move> moves = moves_of(cells, place.cell);
+  std::vector<PathCorner> corners = {{place.centre(cells[0]), 0}};
+  const auto add = [&](Point middle, Point aside, Point along, double share, int step) {
+    corners.push_back({{middle.x + aside.x + along.x * share * place.cell, middle.y + aside.y + along.y * share * place.cell}, step});
+  };
+  for (size_t i = 0; i < moves.size(); ++i) {
+    const Move& in = moves[i];
+    const Point middle = place.centre(cells[in.step]);
+    if (i + 1 == moves.size()) {
+      add(middle, in.aside, in.direction, 0, in.step);
+      continue;
+    }
+    const Move& out = moves[i + 1];
+    const bool turns = in.direction.x * out.direction.x + in.direction.y * out.direction.y == 0;
+    const bool reverses = in.direction.x == -out.direction.x && in.direction.y == -out.direction.y;
+    if (turns) {
+      add(middle, {in.aside.x + out.aside.x, in.aside.y + out.aside.y}, in.direction, 0, in.step);
+    } else if (reverses || in.aside.x != out.aside.x || in.aside.y != out.aside.y) {
+      // Back, or into another lane.
+      add(middle, in.aside, in.direction, reverses ? 0.1 : -0.2, in.step);
+      add(middle, out.aside, in.direction, reverses ? 0.1 : 0.2, in.step);
+    } else {
+      add(middle, in.aside, in.direction, 0, in.step);
+    }
+  }
+  return corners;
+}
+
+void draw_path(Canvas& canvas, const MazePlace& place, const std::vector<uint8_t>& cells, int steps) {
+  const std::vector<PathCorner> corners = path_corners(place, cells);
+  const double line = std::max(1.5, kLineShare * place.cell), casing = std::max(line + 1, kCasingShare * place.cell);
+  const auto colour = [&](size_t i) { return time_colour(steps > 1 ? double(corners[i].step - 1) / (steps - 1) : 1); };
+  // A piece's casing comes just before it, so that a later way is seen to cross an earlier one; its beginning is drawn over by
+  // the piece before it once more, lest the casing cut that one's end.
+  for (size_t i = 1; i < corners.size(); ++i) {
+    draw_piece(canvas, corners[i - 1].at, corners[i].at, casing, kPaperFloor);
+    if (i > 1) draw_piece(canvas, corners[i - 2].at, corners[i - 1].at, line, colour(i - 1));
+    draw_piece(canvas, corners[i - 1].at, corners[i].at, line, colour(i));
+  }
+  for (size_t i = 1; i < corners.size(); ++i) {
+    if (corners[i].step % kArrowEvery != 1 || corners[i].step == corners[i - 1].step) continue;
+    const Point a = corners[i - 1].at, b = corners[i].at;
+    const double length = std::hypot(b.x - a.x, b.y - a.y), size = 0.3 * place.cell;
+    if (length < size) continue;
+    const Point direction = {(b.x - a.x) / length, (b.y - a.y) / length};
+    const Point tip = {(a.x + b.x + direction.x * size) / 2, (a.y + b.y + direction.y * size) / 2};
+    draw_arrowhead(canvas, tip, direction, size, colour(i));
+  }
+}
+
+}  // namespace synpo

@@ -1,0 +1,92 @@
+// synpo-render embedding: where a checkpoint's environments and tasks lie in their embedding spaces.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "draw/embedding_picture.h"
+#include "learn/model.h"
+#include "synpo-render.h"
+
+using namespace synpo;
+
+namespace {
+
+// A row of an embedding table, in the order of the picture.
+struct Row {
+  int index;
+  std::string name;
+};
+
+// Embeddings as the policy uses them.
+Embeddings read_embeddings(const Model& model, const std::string& tensor, const std::string& title, const std::vector<Row>& rows) {
+  const TensorInfo* place = model.policy->parameters().find(tensor);
+  if (!place) fail(Exit::kData, "the method ", quoted(model.method), " has no tensor '", tensor, "'");
+  Embeddings out{title, {}, {}, model.shape.embedding, {}};
+  for (const Row& row : rows) {
+    out.names.push_back(row.name);
+    const float* values = model.parameters.data() + place->offset + size_t(row.index) * out.size;
+    double square = 0;
+    for (int i = 0; i < out.size; ++i) square += double(values[i]) * values[i];
+    const double factor = model.shape.normalise_embeddings && square > 0 ? std::sqrt(out.size / square) : 1;
+    for (int i = 0; i < out.size; ++i) out.values.push_back(factor * values[i]);
+  }
+  return out;
+}
+
+std::string count_text(size_t drawn, int all) { return int(drawn) == all ? concat(all) : concat(drawn, " of ", all); }
+
+}  // namespace
+
+int embedding(int argc, char** argv) {
+  EmbeddingStyle style;
+  PictureOptions picture;
+  std::string kind = "pca", metric = "cosine";
+  bool all = false;
+  const auto one_of = [](std::string& value, const std::string& one, const std::string& other) {
+    return [&value, one, other](const std::string& given) {
+      if (given != one && given != other) throw std::invalid_argument("expected " + one + " or " + other);
+      value = given;
+    };
+  };
+  Options options("synpo-render embedding", "[OPTION]... [CHECKPOINT]", "Draws a checkpoint's embeddings of environments and of tasks side by side.");
+  options.call(0, "kind", "KIND", "pca: two principal components; distance: matrices [pca]", one_of(kind, "pca", "distance"))
+      .call(0, "metric", "NAME", "distances: cosine or euclidean [cosine]", one_of(metric, "cosine", "euclidean"))
+      .flag(0, "all", "environments and tasks of no seen pair too", all)
+      .text(0, "title", "TEXT", "title above the picture", style.title);
+  picture.add_to(options);
+  const auto operands = options.parse(argc, argv, 0, 1);
+  if (options.given("metric") && kind != "distance") fail(Exit::kUsage, "--metric is for --kind distance");
+  style.scale = picture.scale;
+
+  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  Input input(operands.empty() ? "-" : operands[0]);
+  const Checkpoint checkpoint = read_checkpoint(input);
+  const GridSet world = world_of(checkpoint);
+  const Model model = load_model(checkpoint, world);
+
+  std::vector<Row> envs, tasks;
+  const auto trained = [&](int EnvTask::*side, int index) {
+    return all || std::any_of(model.seen.begin(), model.seen.end(), [&](const EnvTask& pair) { return pair.*side == index; });
+  };
+  for (int i = 0; i < world.envs(); ++i)
+    if (trained(&EnvTask::env, i)) envs.push_back({i, world.maze(i).name});
+  for (int i = 0; i < world.task_count(); ++i)
+    if (trained(&EnvTask::task, i)) tasks.push_back({i, world.tasks()[i].name()});
+  const auto treasures = [&](const Row& row) { return std::pair(world.tasks()[row.index].first, world.tasks()[row.index].second); };
+  std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
+
+  std::vector<Embeddings> panels = {read_embeddings(model, "embedding.env", "environments", envs),
+                                    read_embeddings(model, "embedding.task", "tasks", tasks)};
+  for (const Row& row : tasks) panels[1].tasks.push_back(world.tasks()[row.index]);
+  const char* what = kind == "pca" ? "principal components" : metric == "cosine" ? "cosine distance" : "Euclidean distance";
+  style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", count_text(envs.size(), world.envs()),
+                         " environments and ", count_text(tasks.size(), world.task_count()), " tasks, size ", model.shape.embedding, "; ",
+                         model.method, ", ", model.updates, " updates; a task's mark: left its first treasure, right its second");
+  const Font font(picture.font);
+  if (kind == "pca")
+    finish(output, draw_embedding_map(panels, style, font));
+  else
+    finish(output, draw_embedding_distances(panels, metric == "cosine" ? Distance::kCosine : Distance::kEuclidean, style, font));
+  return 0;
+}
