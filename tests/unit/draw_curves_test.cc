@@ -270,7 +270,7 @@ TEST(Curves, CaptionSaysWhatTheBandIs) {
     CurvesStyle style;
     style.band = band;
     std::string out;
-    for (const std::string& line : lay_out_curves(curve_set(2, runs, "m", band), style, font()).caption) out += line;
+    for (const std::string& line : lay_out_curves(curve_set(2, runs, "m", band), style, font()).heading.caption) out += line;
     return out;
   };
   EXPECT_EQ(caption(1, Band::kSd), "");
