@@ -44,7 +44,8 @@ std::vector<bool> cells_that_name_parts(const HeatTable& table) {
   return names;
 }
 
-void draw_cell(Canvas& canvas, const Box& box, const HeatCell& cell, const Ramp& ramp, const HeatmapLayout& layout, const std::string& part) {
+void draw_cell(Canvas& canvas, const Box& box, const HeatCell& cell, const Ramp& ramp, const HeatmapLayout& layout,
+               const std::string& part = "") {
   const Rgb ground = cell.evaluated() ? ramp_colour(ramp, cell.rate()) : kPaper;
   if (cell.evaluated())
     canvas.fill(box, ground);
@@ -79,7 +80,7 @@ void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::P
     const Ramp& ramp = group_ramp(table, margin.group, scheme);
     const int offset = layout.margin_space + int(i) * layout.margin_cell, x = matrix.right() + offset, y = matrix.bottom() + offset;
     const auto draw = [&](const Box& box, const HeatCell& cell) {
-      if (cell.evaluated()) draw_cell(canvas, box, cell, ramp, layout, "");
+      if (cell.evaluated()) draw_cell(canvas, box, cell, ramp, layout);
     };
     for (size_t task = 0; task < margin.tasks.size(); ++task)
       draw({x, matrix.y + int(task) * layout.cell, across, side}, margin.tasks[task]);

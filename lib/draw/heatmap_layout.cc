@@ -36,6 +36,13 @@ int widest(const std::vector<std::string>& texts, int size, const Font& font) {
   return width;
 }
 
+// The largest size at which a rate fits into a cell, 0 where it could not be read.
+int value_size(const HeatmapLayout& layout, const Font& font) {
+  int size = layout.pixels(kValuePt);
+  while (size > 0 && font.width("0.88", size) > layout.cell - layout.gap - layout.pixels(3)) --size;
+  return size < std::max(kSmallestValuePixels, layout.pixels(kSmallestValuePt)) ? 0 : size;
+}
+
 std::string caption_of(const HeatFigure& figure) {
   std::string out = figure.panels.size() == 1 ? figure.panels[0].table.caption : "";
   std::string trees;
@@ -48,7 +55,7 @@ std::string caption_of(const HeatFigure& figure) {
   return out;
 }
 
-// What the legend says of a figure's only panel.
+// Of a panel among several: what the legend says where there is but one.
 std::string panel_caption(const HeatTable& table) {
   std::string means;
   for (const HeatGroup& group : table.groups)
@@ -78,11 +85,7 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   out.cell = px(style.cell_pt > 0 ? style.cell_pt : automatic_cell_pt(std::max(tasks, across)));
   out.gap = out.cell >= px(8) ? px(0.75) : 0;
   out.label_size = std::clamp(out.cell * 5 / 6, px(kSmallestLabelPt), px(kLabelPt));
-  if (style.values) {
-    out.value_size = px(kValuePt);
-    while (out.value_size > 0 && font.width("0.88", out.value_size) > out.cell - out.gap - px(3)) --out.value_size;
-    if (out.value_size < std::max(kSmallestValuePixels, px(kSmallestValuePt))) out.value_size = 0;
-  }
+  out.value_size = style.values ? value_size(out, font) : 0;
 
   out.margin = px(10);
   out.margin_space = px(5);
@@ -139,7 +142,8 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   // Beside a narrow matrix the axis' name reaches under the margins' names.
   if (env_axis > width) out.env_axis_y = std::max(out.env_axis_y, margin_bottom + px(6));
   // The names' letters reach below the digits' line by up to a third of their size.
-  out.height = std::max({out.env_axis_y + axis_size * 4 / 3, margin_bottom + out.label_size / 3, out.legend.bottom(), y + (height + task_axis + 1) / 2}) + out.margin;
+  const int lowest_text = std::max(out.env_axis_y + axis_size * 4 / 3, margin_bottom + out.label_size / 3);
+  out.height = std::max({lowest_text, out.legend.bottom(), y + (height + task_axis + 1) / 2}) + out.margin;
   return out;
 }
 

@@ -56,21 +56,26 @@ void count(HeatGroup& group, const HeatCell& cell) {
 
 HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_part) {
   std::vector<const MatrixRow*> rows;
-  std::set<std::string> methods, worlds;
+  std::set<std::string> methods;
+  std::set<std::pair<std::string, int64_t>> worlds;  // with the window
   Names envs, tasks;
   std::set<std::string> part_names;
   for (const MatrixRow& row : matrix.rows) {
     if (!method.empty() && row.method != method) continue;
     rows.push_back(&row);
     methods.insert(row.method);
-    worlds.insert(concat(row.world, " with window ", row.window));
+    worlds.emplace(row.world, row.window);
     envs.add(row.env);
     tasks.add(row.task);
     if (!row.part.empty()) part_names.insert(row.part);
   }
   if (rows.empty()) fail(Exit::kData, "no row", method.empty() ? "" : " of the method " + quoted(method));
   if (methods.size() > 1) fail(Exit::kData, "rows of several methods (", joined(methods), "): choose one with --method");
-  if (worlds.size() > 1) fail(Exit::kData, "rows of several worlds (", joined(worlds), "): draw them one by one");
+  if (worlds.size() > 1) {
+    std::set<std::string> names;
+    for (const auto& [world, window] : worlds) names.insert(concat(world, " with window ", window));
+    fail(Exit::kData, "rows of several worlds (", joined(names), "): draw them one by one");
+  }
   if (by_part && part_names.empty()) fail(Exit::kData, "no column part to colour by");
   if (const size_t side = std::max(tasks.list.size(), envs.list.size()); side > kMostHeatNames)
     fail(Exit::kData, side, tasks.list.size() == side ? " tasks" : " environments", ": expected at most ", kMostHeatNames);
