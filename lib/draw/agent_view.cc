@@ -113,12 +113,12 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
     next.x += entry_width + key_between;
   }
 
-  const Heading title = lay_out_heading(style.title.empty() ? words(moment) : style.title, "", width - 2 * margin, style.scale, font);
-  const int headings_y = margin + title.height() + px(5), panels_y = headings_y + heading;
+  const Heading title(style.title.empty() ? words(moment) : style.title, "", width - 2 * margin, style.scale, font);
+  const int headings_y = margin + title.height(), panels_y = headings_y + heading;
   const int key_y = panels_y + side + history_height + px(14);
   Canvas canvas(width, key_y + next.y + sign + margin, font);
 
-  draw_heading(canvas, title, margin, margin);
+  title.draw(canvas, margin, margin);
   const int window = 2 * style.radius + 1;
   canvas.text(margin, headings_y, "(a) the maze", text, kSoftInk);
   canvas.text(right_x, headings_y, concat("(b) what the agent sees, window ", window, " x ", window), text, kSoftInk);

@@ -93,9 +93,8 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   const Axis x = x_axis(set, style), y = y_axis(set, style, x, std::clamp(height / px(32), 2, 11));
   CurvesLayout out{.width = width, .height = height, .heading = {}, .margin = margin, .legend_y = 0, .panel_title_size = px(9),
                    .mark_size = px(8), .mark_space = px(9), .one_panel = one_panel, .panels = {}, .axes = Axes(x, y, style.scale, font)};
-  out.heading = lay_out_heading(style.title, caption_of(set, style.band), inside, style.scale, font);
+  out.heading = Heading(style.title, caption_of(set, style.band), inside, style.scale, font);
   int top = margin + out.heading.height();
-  if (top > margin) top += px(2);
   out.legend_y = top;
   if (const int legend = lay_out_curves_legend(set, one_panel, style.scale, inside, font).height) top += legend + px(3);
 

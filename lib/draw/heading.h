@@ -7,17 +7,21 @@
 
 namespace synpo {
 
-struct Heading {
-  std::vector<std::string> title, caption;                   // lines
-  int title_size, title_line, caption_size, caption_line;    // heights of text, and from line to line, in pixels
-  int height() const { return int(title.size()) * title_line + int(caption.size()) * caption_line; }
-};
-
 constexpr double kTitlePt = 12, kPanelTitlePt = 10;
 
-// Broken into lines of at most `width` pixels; either text may be empty.
-Heading lay_out_heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font,
-                        double title_pt = kTitlePt);
-void draw_heading(Canvas& canvas, const Heading& heading, int x, int y);
+class Heading {
+ public:
+  Heading() = default;  // no text
+  // Each is broken into lines of at most `width` pixels; either may be empty. `scale` is in pixels per point.
+  Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font, double title_pt = kTitlePt);
+  // With the space beneath; 0 for no text.
+  int height() const;
+  void draw(Canvas& canvas, int x, int y) const;
+  const std::vector<std::string>& caption() const { return caption_; }
+
+ private:
+  std::vector<std::string> title_, caption_;
+  int title_size_ = 0, title_line_ = 0, caption_size_ = 0, caption_line_ = 0, space_ = 0;
+};
 
 }  // namespace synpo

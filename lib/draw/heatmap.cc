@@ -136,12 +136,12 @@ Canvas draw_heatmap(const HeatFigure& figure, const HeatmapStyle& style, const F
   const Scheme& scheme = find_scheme(style.scheme);
   const HeatmapLayout layout = lay_out_heatmap(figure, style, font);
   Canvas canvas(layout.width, layout.height, font);
-  draw_heading(canvas, layout.heading, layout.margin, layout.margin);
+  layout.heading.draw(canvas, layout.margin, layout.margin);
   draw_task_labels(canvas, layout);
   for (size_t i = 0; i < layout.panels.size(); ++i) {
     const HeatTable& table = figure.panels[i].table;
     const HeatmapLayout::Panel& panel = layout.panels[i];
-    draw_heading(canvas, panel.heading, panel.matrix.x, panel.heading_y);
+    panel.heading.draw(canvas, panel.matrix.x, panel.heading_y);
     draw_cells(canvas, table, panel.matrix, layout, scheme);
     draw_env_labels(canvas, panel.matrix, layout);
     draw_margins(canvas, table, panel, layout, scheme);

@@ -117,7 +117,7 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
     panel.matrix = {x, 0, width, height};
     right = std::max({out.right_of(panel), x + (width + env_axis + 1) / 2, several ? x + px(kNarrowestPanelPt) : 0});
     const HeatPanel& given = figure.panels[i];
-    panel.heading = lay_out_heading(given.title, several ? panel_caption(given.table) : "", right - x, style.scale, font, kPanelTitlePt);
+    panel.heading = Heading(given.title, several ? panel_caption(given.table) : "", right - x, style.scale, font, kPanelTitlePt);
     headings = std::max(headings, panel.heading.height());
     x = right + px(kBetweenPanelsPt);
   }
@@ -126,10 +126,10 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   out.width = std::max(out.legend.right() + out.margin, px(kNarrowestPt));
 
   // From top to bottom.
-  out.heading = lay_out_heading(style.title, caption_of(figure), out.width - 2 * out.margin, style.scale, font);
-  int y = out.margin + out.heading.height() + (out.heading.height() > 0 ? px(5) : 0);
+  out.heading = Heading(style.title, caption_of(figure), out.width - 2 * out.margin, style.scale, font);
+  int y = out.margin + out.heading.height();
   for (HeatmapLayout::Panel& panel : out.panels) panel.heading_y = y;
-  if (headings > 0) y += headings + px(3);
+  y += headings;
   if (figure.env_tree) y += out.tree_depth + out.tree_space;
   y += std::max(0, (task_axis - height + 1) / 2);
   for (HeatmapLayout::Panel& panel : out.panels) panel.matrix.y = y;

@@ -51,11 +51,11 @@ Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Fo
   const int cell = px(count == 1 ? 14 : 6), side = kGridSide * cell;
   const int label = px(9), below = label + px(9), between = px(16), margin = px(12);
   const int width = 2 * margin + columns * side + (columns - 1) * between;
-  const Heading heading = lay_out_heading(style.title, "", width - 2 * margin, style.scale, font);
-  const int top = margin + heading.height() + (heading.height() > 0 ? px(4) : 0);
+  const Heading heading(style.title, "", width - 2 * margin, style.scale, font);
+  const int top = margin + heading.height();
 
   Canvas canvas(width, top + rows * (side + below) + (rows - 1) * px(8) + margin - px(4), font);
-  draw_heading(canvas, heading, margin, margin);
+  heading.draw(canvas, margin, margin);
   for (int i = 0; i < count; ++i) {
     const int x = margin + i % columns * (side + between), y = top + i / columns * (side + below + px(8));
     draw_maze(canvas, x, y, cell, mazes[i]);
