@@ -7,16 +7,6 @@
 
 namespace synpo {
 
-Matrix read_matrices(std::vector<std::string> files) {
-  if (files.empty()) files = {"-"};
-  std::vector<MatrixSource> sources;
-  for (const std::string& file : files) {
-    Input input(file);
-    sources.push_back({input.name(), read_matrix(input)});
-  }
-  return merge_matrices(std::move(sources));
-}
-
 void add_bootstrap(Options& options, BootstrapPlan& plan, int64_t& seed) {
   options.integer(0, "samples", "COUNT", "samples of the bootstrap", plan.samples, 100, 1000000)
       .integer('s', "seed", "SEED", "seed of the bootstrap", seed, 0, INT64_MAX);

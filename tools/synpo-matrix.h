@@ -12,9 +12,6 @@ namespace synpo {
 
 constexpr int kMostFiles = 100000;
 
-// The matrices of these files (none: standard input), merged.
-Matrix read_matrices(std::vector<std::string> files);
-
 // Adds --samples and -s.
 void add_bootstrap(Options& options, BootstrapPlan& plan, int64_t& seed);
 

@@ -5,9 +5,8 @@
 
 #include "base/error.h"
 #include "draw/agent_view.h"
-#include "draw/heatmap.h"
 #include "draw/maze_picture.h"
-#include "format/matrix.h"
+#include "draw/terminal.h"
 #include "world/maze.h"
 #include "world/task.h"
 
@@ -27,45 +26,18 @@ int find_task(const std::string& name) {
   fail(Exit::kUsage, "no task ", quoted(name), ": expected two of R B G O P, such as R-B");
 }
 
-int heatmap(int argc, char** argv) {
-  HeatmapStyle style;
-  PictureOptions picture;
-  std::string method, by = "seen";
-  bool no_values = false;
-  Options options("synpo-render heatmap", "[OPTION]... [MATRIX]",
-                  "Draws a success matrix: tasks down, environments across, darker is better.");
-  options.text(0, "title", "TEXT", "title above the picture", style.title)
-      .text(0, "method", "NAME", "only the rows of this method", method)
-      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]",
-            [&](const std::string& name) { style.scheme = find_scheme(name).name; })
-      .call(0, "by", "COLUMN", "what the colours tell apart: seen or part [seen]",
-            [&](const std::string& column) {
-              if (column != "seen" && column != "part") throw std::invalid_argument("expected seen or part");
-              by = column;
-            })
-      .flag(0, "no-values", "leave the rates out of the cells", no_values)
-      .real(0, "cell", "POINTS", "side of a cell; 0: by the size of the matrix", style.cell_pt, 0, 200);
-  picture.add_to(options);
-  const auto operands = options.parse(argc, argv, 0, 1);
-  style.values = !no_values;
-  style.scale = picture.scale;
-  Output output(picture.output, Output::Kind::kBinary, picture.force);
-  const Font font(picture.font);
-  Input input(operands.empty() ? "-" : operands[0]);
-  finish(output, draw_heatmap(pool_matrix(read_matrix(input), method, by == "part"), style, font));
-  return 0;
-}
-
 int map(int argc, char** argv) {
   MapStyle style;
   PictureOptions picture;
   std::string world = "gridworld";
   Options options("synpo-render map", "[OPTION]... [NAME]...", "Draws mazes: the ones named, else all, as a grid with their names.");
   options.text('w', "world", "WORLD", "gridworld, or gridworld:DIR for the map files of a folder", world)
-      .text(0, "title", "TEXT", "title above the picture", style.title)
+      .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .integer(0, "columns", "N", "mazes in a row; 0: a grid a little wider than high", style.columns, 0, 1000);
+  picture.add_ansi(options);
   picture.add_to(options);
   const auto names = options.parse(argc, argv, 0, 1000);
+  picture.check(options, {});
   style.scale = picture.scale;
   std::vector<Maze> mazes = open_mazes(world);
   if (!names.empty()) {
@@ -73,8 +45,11 @@ int map(int argc, char** argv) {
     for (const std::string& name : names) chosen.push_back(find_maze(mazes, name));
     mazes = std::move(chosen);
   }
-  Output output(picture.output, Output::Kind::kBinary, picture.force);
-  finish(output, draw_maps(mazes, style, Font(picture.font)));
+  Output output = picture.open();
+  if (picture.ansi)
+    finish(output, terminal_maps(mazes, style, environment_colour(), terminal_width(output.is_stdout() ? 1 : -1)));
+  else
+    finish(output, draw_maps(mazes, style, Font(picture.font)));
   return 0;
 }
 
@@ -92,7 +67,7 @@ int view(int argc, char** argv) {
       .integer(0, "steps", "N", "steps of the expert from the start", steps, 0, kGridStepLimit)
       .integer(0, "window", "R", "radius of what the agent sees of the maze; 0: blind", window, 0, kGridSide - 1)
       .flag(0, "history", "the four pictures of the network's input too", style.history)
-      .text(0, "title", "TEXT", "title instead of maze, task and step", style.title);
+      .call(0, "title", "TEXT", "title instead of maze, task and step", drawn(style.title));
   picture.add_to(options);
   options.parse(argc, argv);
   style.scale = picture.scale;
@@ -109,7 +84,7 @@ int view(int argc, char** argv) {
 
 int body(int argc, char** argv) {
   return run_commands("synpo-render", "Draws success matrices, learning curves, mazes, views, episodes, embeddings and policies as PNG.",
-                      {{"heatmap", "a success matrix", heatmap},
+                      {{"heatmap", "success matrices", heatmap},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes", map},
                        {"view", "what the agent sees", view},

@@ -1,18 +1,18 @@
 #include "base/error.h"
 
+#include <cstdint>
+
+#include "base/text.h"
+
 namespace synpo {
 namespace {
 
-// Length of the UTF-8 sequence at `at`, or 0 when there is none that is well formed and printable.
-size_t utf8_length(const std::string& text, size_t at) {
-  const auto byte = [&](size_t i) { return i < text.size() ? uint8_t(text[i]) : 0; };
-  const uint8_t lead = byte(at);
-  if (lead < 0x80) return lead >= 0x20 && lead != 0x7f ? 1 : 0;
-  const size_t length = lead >= 0xf0 && lead < 0xf5 ? 4 : lead >= 0xe0 && lead < 0xf0 ? 3 : lead >= 0xc2 && lead < 0xe0 ? 2 : 0;
-  for (size_t i = 1; i < length; ++i)
-    if ((byte(at + i) & 0xc0) != 0x80) return 0;
-  const bool c1_control = lead == 0xc2 && byte(at + 1) < 0xa0;
-  return c1_control ? 0 : length;
+// Bytes of the character at `at`, or 0 when there is none that is well formed and printable.
+size_t printable_length(const std::string& text, size_t at) {
+  const size_t length = utf8_length(text, at);
+  const uint8_t lead = uint8_t(text[at]);
+  const bool c1_control = lead == 0xc2 && length == 2 && uint8_t(text[at + 1]) < 0xa0;
+  return lead < 0x20 || lead == 0x7f || c1_control ? 0 : length;
 }
 
 }  // namespace
@@ -23,7 +23,7 @@ std::string quoted(const std::string& text) {
   std::string out = "'";
   size_t i = 0;
   while (i < text.size() && out.size() < kLimit) {
-    if (const size_t length = utf8_length(text, i)) {
+    if (const size_t length = printable_length(text, i)) {
       out.append(text, i, length);
       i += length;
     } else {

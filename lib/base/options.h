@@ -21,6 +21,8 @@ class Options {
   Options& integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low, int64_t high);
   Options& real(char letter, const char* name, const char* arg, const char* help, double& value, double low, double high);
   Options& text(char letter, const char* name, const char* arg, const char* help, std::string& value);
+  // One of these words; any other is a usage error that names them.
+  Options& choice(char letter, const char* name, const char* arg, const char* help, std::string& value, std::vector<std::string> words);
   // Calls `set` with the argument; std::invalid_argument thrown by it is a usage error that names the option.
   Options& call(char letter, const char* name, const char* arg, const char* help, std::function<void(const std::string&)> set);
   // A heading in --help above the options that follow.

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "draw/colour.h"
+#include "draw/heading.h"
 #include "draw/key.h"
 #include "draw/maze_picture.h"
 #include "world/planner.h"
@@ -12,7 +13,7 @@
 namespace synpo {
 namespace {
 
-constexpr double kCellPt = 13, kBetweenPt = 24, kMarginPt = 12, kTextPt = 9, kTitlePt = 12;
+constexpr double kCellPt = 13, kBetweenPt = 24, kMarginPt = 12, kTextPt = 9;
 constexpr Rgb kWindow = {0, 150, 160};
 
 void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment, int radius) {
@@ -76,7 +77,7 @@ ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int6
 Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const Font& font) {
   const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * style.scale))); };
   const int cell = px(kCellPt), side = kGridSide * cell, between = px(kBetweenPt), margin = px(kMarginPt);
-  const int text = px(kTextPt), title_size = px(kTitlePt), title_line = px(17), heading = text + px(8);
+  const int text = px(kTextPt), heading = text + px(8);
   const int width = 2 * margin + 2 * side + between, right_x = margin + side + between;
 
   // The row of four pictures takes the whole width.
@@ -85,12 +86,12 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
   const int history_height = style.history ? px(14) + heading + small + px(6) + text : 0;
 
   const Key key(key_entries(moment), width - 2 * margin, style.scale, font);
-  const std::vector<std::string> title = font.wrapped(style.title.empty() ? words(moment) : style.title, title_size, width - 2 * margin);
-  const int headings_y = margin + int(title.size()) * title_line + px(5), panels_y = headings_y + heading;
+  const Heading title(style.title.empty() ? words(moment) : style.title, "", width - 2 * margin, style.scale, font);
+  const int headings_y = margin + title.height(), panels_y = headings_y + heading;
   const int key_y = panels_y + side + history_height + px(14);
   Canvas canvas(width, key_y + key.height() + margin, font);
 
-  for (size_t i = 0; i < title.size(); ++i) canvas.text(margin, margin + int(i) * title_line, title[i], title_size, kInk);
+  title.draw(canvas, margin, margin);
   const int window = 2 * style.radius + 1;
   canvas.text(margin, headings_y, "(a) the maze", text, kSoftInk);
   canvas.text(right_x, headings_y, concat("(b) what the agent sees, window ", window, " x ", window), text, kSoftInk);

@@ -110,15 +110,7 @@ Dash curve_dash(const CurveLook& look, double scale) {
 Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font) {
   const CurvesLayout layout = lay_out_curves(set, style, font);
   Canvas canvas(layout.width, layout.height, font);
-  int y = layout.margin;
-  for (const std::string& line : layout.title) {
-    canvas.text(layout.margin, y, line, layout.title_size, kInk);
-    y += layout.title_line;
-  }
-  for (const std::string& line : layout.caption) {
-    canvas.text(layout.margin, y, line, layout.caption_size, kSoftInk);
-    y += layout.caption_line;
-  }
+  layout.heading.draw(canvas, layout.margin, layout.margin);
   const CurvesLegend legend = lay_out_curves_legend(set, layout.one_panel, style.scale, layout.width - 2 * layout.margin, font);
   draw_curves_legend(canvas, legend, layout.margin, layout.legend_y, style.scale);
   for (const CurvesLayout::Panel& panel : layout.panels) {

@@ -8,6 +8,7 @@
 
 #include "draw/axes.h"
 #include "draw/canvas.h"
+#include "draw/heading.h"
 #include "draw/stroke.h"
 #include "stats/curve.h"
 
@@ -56,6 +57,11 @@ struct CurvesStyle {
   double scale = 2;                  // pixels per point
 };
 
+// "LOW:HIGH", either may be missing; "VALUE", "VALUE=LABEL" or "seen:VALUE=LABEL"; "WIDTHxHEIGHT" in points. Throw std::invalid_argument.
+AxisRange parse_axis_range(const std::string& text);
+CurveMark parse_curve_mark(const std::string& text);
+void parse_curves_size(const std::string& text, CurvesStyle& style);
+
 // All in pixels.
 struct CurvesLayout {
   struct Panel {
@@ -64,10 +70,10 @@ struct CurvesLayout {
     std::vector<int> parts;  // indices into CurveSet::parts
   };
   int width, height;
-  std::vector<std::string> title, caption;  // lines
+  Heading heading;
   int margin, legend_y;
-  int title_size, title_line, caption_size, caption_line, panel_title_size;  // heights of text, and from line to line
-  int mark_size, mark_space;                                                 // a mark's label, and from the plot to it
+  int panel_title_size;       // height of text
+  int mark_size, mark_space;  // a mark's label, and from the plot to it
   bool one_panel;
   std::vector<Panel> panels;
   Axes axes;  // the same for every panel

@@ -91,13 +91,10 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   const int margin = px(kMarginPt), inside = std::max(1, width - 2 * margin);
 
   const Axis x = x_axis(set, style), y = y_axis(set, style, x, std::clamp(height / px(32), 2, 11));
-  CurvesLayout out{.width = width, .height = height, .title = {}, .caption = {}, .margin = margin, .legend_y = 0,
-                   .title_size = px(12), .title_line = px(17), .caption_size = px(8.5), .caption_line = px(13), .panel_title_size = px(9),
+  CurvesLayout out{.width = width, .height = height, .heading = {}, .margin = margin, .legend_y = 0, .panel_title_size = px(9),
                    .mark_size = px(8), .mark_space = px(9), .one_panel = one_panel, .panels = {}, .axes = Axes(x, y, style.scale, font)};
-  out.title = font.wrapped(style.title, out.title_size, inside);
-  out.caption = font.wrapped(caption_of(set, style.band), out.caption_size, inside);
-  int top = margin + int(out.title.size()) * out.title_line + int(out.caption.size()) * out.caption_line;
-  if (top > margin) top += px(2);
+  out.heading = Heading(style.title, caption_of(set, style.band), inside, style.scale, font);
+  int top = margin + out.heading.height();
   out.legend_y = top;
   if (const int legend = lay_out_curves_legend(set, one_panel, style.scale, inside, font).height) top += legend + px(3);
 

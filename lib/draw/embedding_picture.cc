@@ -16,7 +16,7 @@
 namespace synpo {
 namespace {
 
-constexpr double kMarginPt = 12, kBetweenPt = 22, kPanelTitlePt = 10, kNamePt = 7.5, kSmallestPt = 4.5;
+constexpr double kMarginPt = 12, kBetweenPt = 22, kNamePt = 7.5, kSmallestPt = 4.5;
 constexpr double kPlotPt = 270, kMatrixPt = 300, kLargestCellPt = 30, kBarPt = 9, kBarTextPt = 8.5;
 constexpr int kMostTicks = 8;
 constexpr Rgb kDot = {0, 114, 178};

@@ -110,12 +110,13 @@ std::vector<std::string> Font::wrapped(const std::string& text, int size, int wi
   std::vector<std::string> lines;
   std::string line;
   for (size_t begin = 0; begin < text.size();) {
-    const size_t end = std::min(text.find(' ', begin), text.size());
+    const size_t end = std::min(text.find_first_of(" \n", begin), text.size());
     const std::string word = fitted(text.substr(begin, end - begin), size, width);
+    const bool new_line = begin > 0 && text[begin - 1] == '\n';
     begin = end + 1;
     if (word.empty()) continue;
     const std::string longer = line.empty() ? word : line + " " + word;
-    if (!line.empty() && this->width(longer, size) > width) {
+    if (!line.empty() && (new_line || this->width(longer, size) > width)) {
       lines.push_back(line);
       line = word;
     } else {

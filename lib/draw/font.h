@@ -31,7 +31,7 @@ class Font {
   int digit_height(int size) const { return mask("0", size).ascent; }
   // `text`, or its beginning and end with an ellipsis between them, so that it is at most `width` pixels wide.
   std::string fitted(const std::string& text, int size, int width) const;
-  // `text` broken at blanks into lines of at most `width` pixels; a longer word is fitted.
+  // `text` broken at line ends, and at blanks into lines of at most `width` pixels; a longer word is fitted.
   std::vector<std::string> wrapped(const std::string& text, int size, int width) const;
 
  private:

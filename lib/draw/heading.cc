@@ -1,16 +1,20 @@
 #include "draw/heading.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "draw/colour.h"
 
 namespace synpo {
 
-Heading::Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font) {
-  const Pixels px{scale};
-  title_size_ = px(12);
-  title_line_ = px(17);
-  caption_size_ = px(8.5);
-  caption_line_ = px(13);
-  space_ = px(5);
+Heading::Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font, double title_pt) {
+  constexpr double kCaptionPt = 8.5, kLeading = 1.45, kSpacePt = 4;
+  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  title_size_ = px(title_pt);
+  title_line_ = px(title_pt * kLeading);
+  caption_size_ = px(kCaptionPt);
+  caption_line_ = px(kCaptionPt * kLeading);
+  space_ = px(kSpacePt);
   title_ = font.wrapped(title, title_size_, width);
   caption_ = font.wrapped(caption, caption_size_, width);
 }

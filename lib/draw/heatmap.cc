@@ -1,5 +1,6 @@
 #include "draw/heatmap.h"
 
+#include "draw/dendrogram.h"
 #include "draw/heatmap_legend.h"
 
 namespace synpo {
@@ -8,11 +9,11 @@ namespace {
 constexpr double kPartNamePt = 6;
 
 // Lines where two neighbours belong to different parts.
-void draw_part_borders(Canvas& canvas, const HeatTable& table, const HeatmapLayout& layout) {
+void draw_part_borders(Canvas& canvas, const HeatTable& table, const Box& matrix, const HeatmapLayout& layout) {
   const int line = layout.pixels(1.5), cell = layout.cell, back = (line + layout.gap) / 2;
   for (size_t task = 0; task < table.tasks.size(); ++task)
     for (size_t env = 0; env < table.envs.size(); ++env) {
-      const int x = layout.matrix.x + int(env) * cell - back, y = layout.matrix.y + int(task) * cell - back;
+      const int x = matrix.x + int(env) * cell - back, y = matrix.y + int(task) * cell - back;
       const int part = table.at(task, env).part;
       const auto borders_on = [&](int other) { return part >= 0 && other >= 0 && part != other; };
       if (env > 0 && borders_on(table.at(task, env - 1).part)) canvas.fill({x, y, line, cell + line}, kInk);
@@ -43,65 +44,111 @@ std::vector<bool> cells_that_name_parts(const HeatTable& table) {
   return names;
 }
 
-void draw_cells(Canvas& canvas, const HeatTable& table, const HeatmapLayout& layout, const Scheme& scheme) {
-  const int name_size = layout.pixels(kPartNamePt), inset = layout.pixels(2), envs = int(table.envs.size());
+void draw_cell(Canvas& canvas, const Box& box, const HeatCell& cell, const Ramp& ramp, const HeatmapLayout& layout,
+               const std::string& part = "") {
+  const Rgb ground = cell.evaluated() ? ramp_colour(ramp, cell.rate()) : kPaper;
+  if (cell.evaluated())
+    canvas.fill(box, ground);
+  else if (layout.gap > 0)
+    draw_empty_cell(canvas, box, layout.pixels(0.5));
+  const int inset = layout.pixels(2), part_size = layout.pixels(kPartNamePt);
+  if (!part.empty())
+    canvas.text(box.x + inset, box.y + inset, canvas.font().fitted(part, part_size, box.width - 2 * inset), part_size, ink_on(ground));
+  if (cell.evaluated() && layout.value_size > 0)
+    canvas.text(box.x + box.width / 2, box.y + box.height / 2 + (part.empty() ? 0 : layout.pixels(3)),
+                rate_text(cell.successes, cell.episodes), layout.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
+}
+
+void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const HeatmapLayout& layout, const Scheme& scheme) {
+  const int envs = int(table.envs.size()), side = layout.cell - layout.gap;
   std::vector<bool> named(table.cells.size());
-  if (!table.parts.empty() && layout.cell >= 3 * name_size) named = cells_that_name_parts(table);
+  if (!table.parts.empty() && layout.cell >= 3 * layout.pixels(kPartNamePt)) named = cells_that_name_parts(table);
   for (int i = 0; i < int(table.cells.size()); ++i) {
     const HeatCell& cell = table.cells[i];
-    const int side = layout.cell - layout.gap;
-    const Box box = {layout.matrix.x + i % envs * layout.cell, layout.matrix.y + i / envs * layout.cell, side, side};
-    const Rgb ground = cell.evaluated() ? ramp_colour(group_ramp(table, cell.group, scheme), cell.rate()) : kPaper;
-    if (cell.evaluated())
-      canvas.fill(box, ground);
-    else if (layout.gap > 0)
-      draw_empty_cell(canvas, box, layout.pixels(0.5));
-    if (named[i])
-      canvas.text(box.x + inset, box.y + inset, canvas.font().fitted(table.parts[cell.part].name, name_size, side - 2 * inset),
-                  name_size, ink_on(ground));
-    if (cell.evaluated() && layout.value_size > 0)
-      canvas.text(box.x + side / 2, box.y + side / 2 + (named[i] ? layout.pixels(3) : 0), rate_text(cell.successes, cell.episodes),
-                  layout.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
+    const Box box = {matrix.x + i % envs * layout.cell, matrix.y + i / envs * layout.cell, side, side};
+    draw_cell(canvas, box, cell, group_ramp(table, cell.group, scheme), layout, named[i] ? table.parts[cell.part].name : "");
   }
 }
 
-void draw_labels(Canvas& canvas, const HeatTable& table, const HeatmapLayout& layout) {
-  const Box& matrix = layout.matrix;
-  const int space = layout.pixels(5), middle = (layout.cell - layout.gap) / 2;
-  for (size_t i = 0; i < table.tasks.size(); ++i)
-    canvas.text(matrix.x - space, matrix.y + int(i) * layout.cell + middle, layout.task_labels[i], layout.label_size, kInk,
-                Across::kRight, Upright::kMiddle);
-  for (size_t i = 0; i < table.envs.size(); ++i) {
-    const int x = matrix.x + int(i) * layout.cell + middle, y = matrix.bottom() + space;
-    if (layout.env_labels_up)
-      canvas.text_up(x, y, layout.env_labels[i], layout.label_size, kInk, Across::kRight);
+// To the right of the matrix the means of its tasks, below it those of its environments.
+void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::Panel& panel, const HeatmapLayout& layout,
+                  const Scheme& scheme) {
+  const Box& matrix = panel.matrix;
+  const int across = layout.margin_cell - layout.gap, side = layout.cell - layout.gap, space = layout.pixels(5);
+  for (size_t i = 0; i < panel.margins.size(); ++i) {
+    const HeatMargin& margin = panel.margins[i];
+    const Ramp& ramp = group_ramp(table, margin.group, scheme);
+    const int offset = layout.margin_space + int(i) * layout.margin_cell, x = matrix.right() + offset, y = matrix.bottom() + offset;
+    const auto draw = [&](const Box& box, const HeatCell& cell) {
+      if (cell.evaluated()) draw_cell(canvas, box, cell, ramp, layout);
+    };
+    for (size_t task = 0; task < margin.tasks.size(); ++task)
+      draw({x, matrix.y + int(task) * layout.cell, across, side}, margin.tasks[task]);
+    for (size_t env = 0; env < margin.envs.size(); ++env)
+      draw({matrix.x + int(env) * layout.cell, y, side, across}, margin.envs[env]);
+    if (layout.margin_labels_up)
+      canvas.text_up(x + across / 2, layout.margin_labels_y, margin.name, layout.label_size, kInk, Across::kRight);
     else
-      canvas.text(x, y, layout.env_labels[i], layout.label_size, kInk, Across::kCentre);
+      canvas.text(x + across / 2, layout.margin_labels_y, margin.name, layout.label_size, kInk, Across::kCentre);
+    if (&panel == &layout.panels[0])
+      canvas.text(matrix.x - space, y + across / 2, margin.name, layout.label_size, kInk, Across::kRight, Upright::kMiddle);
   }
-  canvas.text_up(layout.margin + layout.axis_size / 2, matrix.y + matrix.height / 2, kTaskAxis, layout.axis_size, kSoftInk,
-                 Across::kCentre);
-  canvas.text(matrix.x + matrix.width / 2, layout.env_axis_y, kEnvAxis, layout.axis_size, kSoftInk, Across::kCentre);
+}
+
+void draw_task_labels(Canvas& canvas, const HeatmapLayout& layout) {
+  const Box& matrix = layout.panels[0].matrix;
+  const int middle = (layout.cell - layout.gap) / 2;
+  for (size_t i = 0; i < layout.task_labels.size(); ++i)
+    canvas.text(matrix.x - layout.pixels(5), matrix.y + int(i) * layout.cell + middle, layout.task_labels[i], layout.label_size, kInk,
+                Across::kRight, Upright::kMiddle);
+  const int size = layout.pixels(kAxisPt);
+  canvas.text_up(layout.margin + size / 2, matrix.y + matrix.height / 2, kTaskAxis, size, kSoftInk, Across::kCentre);
+}
+
+void draw_env_labels(Canvas& canvas, const Box& matrix, const HeatmapLayout& layout) {
+  const int middle = (layout.cell - layout.gap) / 2;
+  for (size_t i = 0; i < layout.env_labels.size(); ++i) {
+    const int x = matrix.x + int(i) * layout.cell + middle;
+    if (layout.env_labels_up)
+      canvas.text_up(x, layout.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kRight);
+    else
+      canvas.text(x, layout.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kCentre);
+  }
+  canvas.text(matrix.x + matrix.width / 2, layout.env_axis_y, kEnvAxis, layout.pixels(kAxisPt), kSoftInk, Across::kCentre);
+}
+
+// Beside the last panel the tree of the tasks, above each panel that of the environments.
+void draw_trees(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& layout) {
+  const int line = layout.pixels(0.6), middle = (layout.cell - layout.gap - line) / 2;
+  const HeatmapLayout::Panel& last = layout.panels.back();
+  if (figure.task_tree)
+    draw_tree_right(canvas, *figure.task_tree, layout.right_of(last) + layout.tree_space, last.matrix.y + middle, layout.cell,
+                    layout.tree_depth, line);
+  if (figure.env_tree)
+    for (const HeatmapLayout::Panel& panel : layout.panels)
+      draw_tree_up(canvas, *figure.env_tree, panel.matrix.x + middle, panel.matrix.y - layout.tree_space, layout.cell, layout.tree_depth,
+                   line);
 }
 
 }  // namespace
 
-Canvas draw_heatmap(const HeatTable& table, const HeatmapStyle& style, const Font& font) {
+Canvas draw_heatmap(const HeatFigure& figure, const HeatmapStyle& style, const Font& font) {
   const Scheme& scheme = find_scheme(style.scheme);
-  const HeatmapLayout layout = lay_out_heatmap(table, style, font);
+  const HeatmapLayout layout = lay_out_heatmap(figure, style, font);
   Canvas canvas(layout.width, layout.height, font);
-  int y = layout.margin;
-  for (const std::string& line : layout.title) {
-    canvas.text(layout.margin, y, line, layout.title_size, kInk);
-    y += layout.title_line;
+  layout.heading.draw(canvas, layout.margin, layout.margin);
+  draw_task_labels(canvas, layout);
+  for (size_t i = 0; i < layout.panels.size(); ++i) {
+    const HeatTable& table = figure.panels[i].table;
+    const HeatmapLayout::Panel& panel = layout.panels[i];
+    panel.heading.draw(canvas, panel.matrix.x, panel.heading_y);
+    draw_cells(canvas, table, panel.matrix, layout, scheme);
+    draw_env_labels(canvas, panel.matrix, layout);
+    draw_margins(canvas, table, panel, layout, scheme);
+    if (!table.parts.empty()) draw_part_borders(canvas, table, panel.matrix, layout);
   }
-  for (const std::string& line : layout.caption) {
-    canvas.text(layout.margin, y, line, layout.caption_size, kSoftInk);
-    y += layout.caption_line;
-  }
-  draw_cells(canvas, table, layout, scheme);
-  draw_labels(canvas, table, layout);
-  if (!table.parts.empty()) draw_part_borders(canvas, table, layout);
-  draw_legend(canvas, table, layout, scheme);
+  draw_trees(canvas, figure, layout);
+  draw_legend(canvas, figure, layout, scheme);
   return canvas;
 }
 

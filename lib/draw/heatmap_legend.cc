@@ -22,17 +22,23 @@ int entry_height(const HeatmapLegend::Entry& entry, const HeatmapLayout& layout)
 
 }  // namespace
 
-HeatmapLegend lay_out_legend(const HeatTable& table, const HeatmapLayout& layout, const Font& font) {
+HeatmapLegend lay_out_legend(const HeatFigure& figure, const HeatmapLayout& layout, const Font& font) {
   using Mark = HeatmapLegend::Mark;
+  const HeatTable& table = figure.panels[0].table;
+  const bool several = figure.panels.size() > 1;
   const auto px = [&](double pt) { return layout.pixels(pt); };
   HeatmapLegend legend{};
   const auto add = [&](Mark mark, const std::vector<HeatGroup>& groups, const std::string& before) {
     for (size_t i = 0; i < groups.size(); ++i)
-      legend.entries.push_back({mark, int(i), font.fitted(before + groups[i].name, px(kTextPt), px(kLongestNamePt)), detail_of(groups[i])});
+      legend.entries.push_back({mark, int(i), font.fitted(before + groups[i].name, px(kTextPt), px(kLongestNamePt)),
+                                several ? "" : detail_of(groups[i])});
   };
   add(Mark::kRamp, table.groups, table.by_part ? "part " : "");
   if (!table.by_part) add(Mark::kPart, table.parts, "part ");
-  if (std::any_of(table.cells.begin(), table.cells.end(), [](const HeatCell& cell) { return !cell.evaluated(); }))
+  const auto has_gaps = [](const HeatPanel& panel) {
+    return std::any_of(panel.table.cells.begin(), panel.table.cells.end(), [](const HeatCell& cell) { return !cell.evaluated(); });
+  };
+  if (std::any_of(figure.panels.begin(), figure.panels.end(), has_gaps))
     legend.entries.push_back({Mark::kEmpty, 0, "not evaluated", ""});
 
   const int bars = int(table.groups.size()) * px(kBarPt + 2);
@@ -53,10 +59,11 @@ void draw_empty_cell(Canvas& canvas, const Box& box, int line) {
   canvas.polygon({{low.x, low.y - w}, {low.x + w, low.y}, {high.x, high.y + w}, {high.x - w, high.y}}, kHairline);
 }
 
-void draw_legend(Canvas& canvas, const HeatTable& table, const HeatmapLayout& layout, const Scheme& scheme) {
+void draw_legend(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& layout, const Scheme& scheme) {
   using Mark = HeatmapLegend::Mark;
+  const HeatTable& table = figure.panels[0].table;
   const auto px = [&](double pt) { return layout.pixels(pt); };
-  const HeatmapLegend legend = lay_out_legend(table, layout, canvas.font());
+  const HeatmapLegend legend = lay_out_legend(figure, layout, canvas.font());
   const int x = layout.legend.x;
   int y = layout.legend.y;
   canvas.text(x, y, kHeading, px(kHeadingPt), kInk);

@@ -1,4 +1,4 @@
-// The legend of a heatmap: a colour bar for each kind of pairs, and a line about each.
+// The legend of a heatmap: a colour bar for each kind of pairs, and a line about each where there is but one panel.
 #pragma once
 #include <string>
 #include <vector>
@@ -18,8 +18,8 @@ struct HeatmapLegend {
   int width, height;
 };
 
-HeatmapLegend lay_out_legend(const HeatTable& table, const HeatmapLayout& layout, const Font& font);
-void draw_legend(Canvas& canvas, const HeatTable& table, const HeatmapLayout& layout, const Scheme& scheme);
+HeatmapLegend lay_out_legend(const HeatFigure& figure, const HeatmapLayout& layout, const Font& font);
+void draw_legend(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& layout, const Scheme& scheme);
 // What stands for a pair that was not evaluated.
 void draw_empty_cell(Canvas& canvas, const Box& box, int line);
 

@@ -2,13 +2,10 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "base/error.h"
-#include "draw/heatmap.h"
-#include "world/maze.h"
-#include "world/task.h"
+#include "draw/heatmap_table.h"
 
 namespace synpo {
 namespace {
@@ -20,20 +17,7 @@ struct Names {
   void add(const std::string& name) {
     if (place.emplace(name, list.size()).second) list.push_back(name);
   }
-  void order(const std::vector<std::string>& sorted) {
-    list = sorted;
-    for (size_t i = 0; i < list.size(); ++i) place[list[i]] = i;
-  }
 };
-
-// The order of Figure 6, or nothing where a task is not one of GridWorld's.
-std::optional<std::vector<std::string>> figure_order(const Names& tasks) {
-  std::vector<std::string> sorted;
-  for (const Task& task : grid_tasks())
-    if (tasks.place.contains(task.name())) sorted.push_back(task.name());
-  if (sorted.size() != tasks.list.size()) return std::nullopt;
-  return sorted;
-}
 
 std::string joined(const std::set<std::string>& names) {
   std::string out;
@@ -71,31 +55,32 @@ void count(HeatGroup& group, const HeatCell& cell) {
 }  // namespace
 
 HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_part) {
-  constexpr size_t kMostCells = 4'000'000;
   std::vector<const MatrixRow*> rows;
-  std::set<std::string> methods, worlds;
+  std::set<std::string> methods;
+  std::set<std::pair<std::string, int64_t>> worlds;  // with the window
   Names envs, tasks;
   std::set<std::string> part_names;
   for (const MatrixRow& row : matrix.rows) {
     if (!method.empty() && row.method != method) continue;
     rows.push_back(&row);
     methods.insert(row.method);
-    worlds.insert(concat(row.world, " with window ", row.window));
+    worlds.emplace(row.world, row.window);
     envs.add(row.env);
     tasks.add(row.task);
     if (!row.part.empty()) part_names.insert(row.part);
   }
   if (rows.empty()) fail(Exit::kData, "no row", method.empty() ? "" : " of the method " + quoted(method));
   if (methods.size() > 1) fail(Exit::kData, "rows of several methods (", joined(methods), "): choose one with --method");
-  if (worlds.size() > 1) fail(Exit::kData, "rows of several worlds (", joined(worlds), "): draw them one by one");
+  if (worlds.size() > 1) {
+    std::set<std::string> names;
+    for (const auto& [world, window] : worlds) names.insert(concat(world, " with window ", window));
+    fail(Exit::kData, "rows of several worlds (", joined(names), "): draw them one by one");
+  }
   if (by_part && part_names.empty()) fail(Exit::kData, "no column part to colour by");
-  if (envs.list.size() * tasks.list.size() > kMostCells)
-    fail(Exit::kData, tasks.list.size(), " tasks x ", envs.list.size(), " environments: expected at most ", kMostCells, " cells");
-
-  std::vector<std::string> sorted_envs = envs.list;
-  std::sort(sorted_envs.begin(), sorted_envs.end(), natural_less);
-  envs.order(sorted_envs);
-  if (const auto sorted_tasks = figure_order(tasks)) tasks.order(*sorted_tasks);
+  if (const size_t side = std::max(tasks.list.size(), envs.list.size()); side > kMostHeatNames)
+    fail(Exit::kData, side, tasks.list.size() == side ? " tasks" : " environments", ": expected at most ", kMostHeatNames);
+  if (envs.list.size() * tasks.list.size() > kMostHeatCells)
+    fail(Exit::kData, tasks.list.size(), " tasks x ", envs.list.size(), " environments: expected at most ", kMostHeatCells, " cells");
 
   HeatTable table;
   table.envs = envs.list;
@@ -106,7 +91,7 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   std::vector<HeatGroup> groups = {{"seen"}, {"unseen"}};
   if (by_part) {
     groups = table.parts;
-    groups.push_back({"not named"});
+    groups.push_back({"unnamed"});
   }
   for (const MatrixRow* row : rows) {
     HeatCell& cell = table.cells[tasks.place[row->task] * envs.list.size() + envs.place[row->env]];
@@ -144,6 +129,8 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
 }
 
 const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme) {
+  static const Ramp grey = {0, 0};
+  if (group < 0) return grey;
   const std::string& name = table.groups[group].name;
   if (table.by_part) return name == "Q" ? scheme.seen : name == "P" ? scheme.other : scheme.unseen;
   return name == "seen" ? scheme.seen : scheme.unseen;

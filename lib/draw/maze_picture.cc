@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "draw/colour.h"
+#include "draw/heading.h"
 
 namespace synpo {
 
@@ -52,13 +53,13 @@ Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Fo
   const int columns = std::clamp(wished, 1, count);
   const int rows = (count + columns - 1) / columns;
   const int cell = px(count == 1 ? 14 : 6), side = kGridSide * cell;
-  const int label = px(9), below = label + px(9), between = px(16), margin = px(12), title_size = px(12), title_line = px(17);
+  const int label = px(9), below = label + px(9), between = px(16), margin = px(12);
   const int width = 2 * margin + columns * side + (columns - 1) * between;
-  const std::vector<std::string> title = font.wrapped(style.title, title_size, width - 2 * margin);
-  const int top = margin + int(title.size()) * title_line + (title.empty() ? 0 : px(4));
+  const Heading heading(style.title, "", width - 2 * margin, style.scale, font);
+  const int top = margin + heading.height();
 
   Canvas canvas(width, top + rows * (side + below) + (rows - 1) * px(8) + margin - px(4), font);
-  for (size_t i = 0; i < title.size(); ++i) canvas.text(margin, margin + int(i) * title_line, title[i], title_size, kInk);
+  heading.draw(canvas, margin, margin);
   for (int i = 0; i < count; ++i) {
     const int x = margin + i % columns * (side + between), y = top + i / columns * (side + below + px(8));
     draw_maze(canvas, x, y, cell, mazes[i]);

@@ -12,7 +12,7 @@
 namespace synpo {
 namespace {
 
-constexpr double kCellPt = 19, kBetweenPt = 20, kMarginPt = 12, kPanelTitlePt = 9.5;
+constexpr double kCellPt = 19, kBetweenPt = 20, kMarginPt = 12;
 constexpr Rgb kWrongGround = {255, 222, 199};
 constexpr double kLeast = 1.0 / kGridActions;  // no best action is less probable
 

@@ -1,8 +1,9 @@
-// Success matrices on a terminal: tasks down, environments across, a coloured block for each pair.
+// Success matrices and mazes on a terminal, as coloured blocks.
 #pragma once
 #include <string>
 
-#include "draw/heatmap.h"
+#include "draw/heatmap_table.h"
+#include "draw/maze_picture.h"
 
 namespace synpo {
 
@@ -20,9 +21,13 @@ int terminal_width(int fd);
 std::string ground_code(Rgb ground, TerminalColour colour);
 constexpr char kPlainCode[] = "\033[0m";
 
-// Rates in per cent; with colours in the ramps of `scheme`, and without a mark after the rate for each kind of pairs but the seen
+// Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after the rate for each kind of pairs but the seen
 // ones. 100 and 0 stand there only where all or none succeeded. Where coloured cells are wider than `width` columns (0: any width is
 // well) they become smaller and lose their numbers. Ends with the means of the kinds.
 std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width);
+
+// Mazes with their names, two columns a cell; walls are '#' without colour. A row has as many mazes as `width` columns hold (0: 80), at
+// most `style.columns` where that is not 0.
+std::string terminal_maps(const std::vector<Maze>& mazes, const MapStyle& style, TerminalColour colour, int width);
 
 }  // namespace synpo

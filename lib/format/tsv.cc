@@ -7,33 +7,10 @@
 #include <unordered_set>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
-
-// Where the first byte stands that is not part of valid UTF-8 (no overlong form, no surrogate, at most U+10FFFF) or that is a
-// control character other than a tab; npos when there is none.
-size_t first_bad_byte(std::string_view text) {
-  for (size_t i = 0; i < text.size();) {
-    const auto byte = [&](size_t at) { return at < text.size() ? uint8_t(text[at]) : 0; };
-    const uint8_t lead = byte(i);
-    if (lead < 0x80) {
-      if ((lead < 0x20 && lead != '\t') || lead == 0x7f) return i;
-      ++i;
-      continue;
-    }
-    const int more = lead >= 0xc2 && lead <= 0xdf ? 1 : (lead & 0xf0) == 0xe0 ? 2 : lead >= 0xf0 && lead <= 0xf4 ? 3 : 0;
-    if (more == 0) return i;
-    for (int k = 1; k <= more; ++k)
-      if ((byte(i + k) & 0xc0) != 0x80) return i;
-    const uint8_t second = byte(i + 1);
-    if ((lead == 0xe0 && second < 0xa0) || (lead == 0xed && second > 0x9f) || (lead == 0xf0 && second < 0x90) ||
-        (lead == 0xf4 && second > 0x8f))
-      return i;
-    i += more + 1;
-  }
-  return std::string_view::npos;
-}
 
 // "invalid UTF-8" or "control character", with the byte.
 std::string name_bad_byte(uint8_t byte) {

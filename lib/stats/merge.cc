@@ -123,6 +123,16 @@ class Merger {
 
 }  // namespace
 
+Matrix read_matrices(std::vector<std::string> files) {
+  if (files.empty()) files = {"-"};
+  std::vector<MatrixSource> sources;
+  for (const std::string& file : files) {
+    Input input(file);
+    sources.push_back({input.name(), read_matrix(input)});
+  }
+  return merge_matrices(std::move(sources));
+}
+
 double add_rewards(double a, double b) {
   constexpr double kExact = 1e13;  // hundredths of larger sums need not be whole numbers of 53 bits
   if (std::abs(a) < kExact && std::abs(b) < kExact) {

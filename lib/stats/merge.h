@@ -19,6 +19,9 @@ struct MatrixSource {
 // sums do not depend on the order of the sources. Unknown columns are united; a source without one has empty fields there.
 Matrix merge_matrices(std::vector<MatrixSource> sources);
 
+// The matrices of these files (none: standard input), merged.
+Matrix read_matrices(std::vector<std::string> files);
+
 // a + b, exactly where both are whole hundredths, as GridWorld's rewards are.
 double add_rewards(double a, double b);
 

@@ -24,8 +24,10 @@ for_writers() {
         "$1" synpo-matrix $command m.tsv
     done
     "$1" synpo-render heatmap m.tsv
+    "$1" synpo-render heatmap --ansi m.tsv
     "$1" synpo-render curves run.log
     "$1" synpo-render map
+    "$1" synpo-render map --ansi
     "$1" synpo-render view
     "$1" synpo-render episode e.jsonl
     "$1" synpo-render episode --ansi e.jsonl

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/progress.h"
 #include "base/random.h"
+#include "base/text.h"
 #include "table_helpers.h"
 #include "temporary.h"
 
@@ -102,6 +103,17 @@ TEST(Random, UniformAndNormalHaveTheirMoments) {
   EXPECT_NEAR(normal_squares / kDraws, 1, 0.025);
   EXPECT_NEAR(normal_fourth / kDraws, 3, 0.16);
   EXPECT_NEAR(neighbours / kDraws, 0, 0.016);
+}
+
+TEST(Text, FirstBadByte) {
+  const auto bad = [](std::string_view text) { return int64_t(first_bad_byte(text)); };
+  for (const char* good : {"", "a\tb", "\u00e9", "\u20ac", "\U0010ffff", "\uffff"}) EXPECT_EQ(bad(good), -1) << good;
+  EXPECT_EQ(bad("ab\n"), 2);
+  EXPECT_EQ(bad("\x7f"), 0);
+  EXPECT_EQ(bad(std::string_view("a\0", 2)), 1);
+  // A lone continuation, a sequence cut off, overlong forms, a surrogate, beyond U+10FFFF.
+  for (const char* wrong : {"\x80", "\xc3", "\xe2\x82", "\xc0\xaf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff"})
+    EXPECT_EQ(bad(std::string("x") + wrong), 1);
 }
 
 TEST(Quoted, ShowsForeignInputSafely) {
@@ -259,7 +271,7 @@ struct Settings {
   bool flag = false;
   int64_t count = 7;
   double part = 0.5;
-  std::string name = "none", called;
+  std::string name = "none", colour = "red", called;
   std::vector<std::string> operands;
   bool count_given = false;
 };
@@ -272,6 +284,7 @@ Settings parsed(std::vector<std::string> arguments, int least = 0, int most = 0)
       .integer('n', "count", "N", "a count", s.count, 0, 1000000)
       .real(0, "part", "P", "a part", s.part, 0, 1)
       .text('o', "output", "FILE", "a name", s.name)
+      .choice(0, "colour", "NAME", "a colour", s.colour, {"red", "green", "blue"})
       .call(0, "call", "X", "a function", [&](const std::string& text) {
         if (text == "bad") throw std::invalid_argument("expected good");
         s.called = text;
@@ -293,13 +306,15 @@ TEST(Options, SetValues) {
   const Settings none = parsed({});
   EXPECT_EQ(none.count, 7);
   EXPECT_FALSE(none.count_given);
-  const Settings s = parsed({"-f", "x", "-n", "2e4", "--part=0.25", "-oa b", "--call", "good", "--", "-y"}, 1, 2);
+  const Settings s = parsed({"-f", "x", "-n", "2e4", "--part=0.25", "-oa b", "--call", "good", "--colour", "blue", "--", "-y"}, 1, 2);
   EXPECT_TRUE(s.flag);
   EXPECT_EQ(s.count, 20000);
   EXPECT_TRUE(s.count_given);
   EXPECT_EQ(s.part, 0.25);
   EXPECT_EQ(s.name, "a b");
   EXPECT_EQ(s.called, "good");
+  EXPECT_EQ(none.colour, "red");
+  EXPECT_EQ(s.colour, "blue");
   EXPECT_EQ(s.operands, (std::vector<std::string>{"x", "-y"}));
 }
 
@@ -314,6 +329,7 @@ TEST(Options, WrongUsageIs64) {
   EXPECT_EQ(wrong_usage({"--part", "nan"}), "64 option --part: found 'nan', expected a number" + help);
   EXPECT_EQ(wrong_usage({"--part", "1.5"}), "64 option --part: found '1.5', expected a number from 0 to 1" + help);
   EXPECT_EQ(wrong_usage({"--call", "bad"}), "64 option --call: found 'bad', expected good" + help);
+  EXPECT_EQ(wrong_usage({"--colour", "grey"}), "64 option --colour: found 'grey', expected red, green or blue" + help);
   EXPECT_EQ(wrong_usage({"x"}), "64 unexpected operand 'x'" + help);
   EXPECT_EQ(wrong_usage({}, 1, 1), "64 an operand is missing" + help);
 }

@@ -270,7 +270,8 @@ TEST(Curves, CaptionSaysWhatTheBandIs) {
     CurvesStyle style;
     style.band = band;
     std::string out;
-    for (const std::string& line : lay_out_curves(curve_set(2, runs, "m", band), style, font()).caption) out += line;
+    const CurvesLayout layout = lay_out_curves(curve_set(2, runs, "m", band), style, font());
+    for (const std::string& line : layout.heading.caption()) out += line;
     return out;
   };
   EXPECT_EQ(caption(1, Band::kSd), "");

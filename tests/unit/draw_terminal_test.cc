@@ -53,6 +53,39 @@ TEST(Terminal, BlocksShrinkToTheWidth) {
   EXPECT_EQ(second_line(4), "push    ");
 }
 
+// Names of mazes that stand in the first line.
+size_t mazes_in_a_row(int64_t columns, int width) {
+  MapStyle style;
+  style.columns = columns;
+  const std::string text = terminal_maps(builtin_mazes(), style, TerminalColour::kNone, width), line = text.substr(0, text.find('\n'));
+  size_t names = 0;
+  for (size_t at = line.find("map"); at != std::string::npos; at = line.find("map", at + 1)) ++names;
+  return names;
+}
+
+TEST(Terminal, Mazes) {
+  const Maze& maze = builtin_mazes()[0];
+  MapStyle style;
+  style.title = "One";
+  const std::string plain = terminal_maps({maze}, style, TerminalColour::kNone, 80);
+  ASSERT_TRUE(plain.starts_with("One\n\nmap1\n" + std::string(32, '#') + '\n'));
+  const size_t first = plain.find('#');
+  for (int cell = 0; cell < kGridCells; ++cell)
+    EXPECT_EQ(plain[first + cell / kGridSide * (2 * kGridSide + 1) + cell % kGridSide * 2], maze.wall[cell] ? '#' : ' ') << cell;
+  const std::string coloured = terminal_maps({maze}, {}, TerminalColour::kTrue, 80);
+  EXPECT_TRUE(coloured.starts_with("map1\n\033[38;5;231;48;2;62;70;82m" + std::string(32, ' ') + "\033[0m\n"));
+  EXPECT_EQ(coloured.find('#'), std::string::npos);
+}
+
+TEST(Terminal, MazesInARow) {
+  EXPECT_EQ(mazes_in_a_row(0, 0), 2u);
+  EXPECT_EQ(mazes_in_a_row(0, 66), 2u);
+  EXPECT_EQ(mazes_in_a_row(0, 65), 1u);
+  EXPECT_EQ(mazes_in_a_row(0, 10), 1u);
+  EXPECT_EQ(mazes_in_a_row(0, 10000), 20u);
+  EXPECT_EQ(mazes_in_a_row(3, 10000), 3u);
+}
+
 TEST(Terminal, ColourCodes) {
   EXPECT_EQ(ground_code({255, 255, 255}, TerminalColour::kTrue), "\033[38;5;16;48;2;255;255;255m");
   EXPECT_EQ(ground_code({0, 0, 100}, TerminalColour::k256), "\033[38;5;231;48;5;17m");

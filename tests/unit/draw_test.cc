@@ -53,18 +53,9 @@ Exit failure(const Matrix& matrix, const std::string& method = "", bool by_part 
   return Exit::kOk;
 }
 
-bool same(Rgb a, Rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
+HeatFigure figure(const Matrix& matrix) { return arrange({{"", pool_matrix(matrix)}}); }
 
-TEST(Pool, OrdersEnvironmentsNaturallyAndTasksAsInFigure6) {
-  Matrix matrix;
-  for (const char* env : {"map10", "map2", "map1"})
-    for (const char* task : {"R-G", "P-R", "R-B"}) matrix.rows.push_back(row(env, task, true, 1));
-  const HeatTable table = pool_matrix(matrix);
-  EXPECT_EQ(table.envs, (std::vector<std::string>{"map1", "map2", "map10"}));
-  EXPECT_EQ(table.tasks, (std::vector<std::string>{"R-B", "P-R", "R-G"}));
-  matrix.rows.push_back(row("map1", "A-task", true, 1));
-  EXPECT_EQ(pool_matrix(matrix).tasks, (std::vector<std::string>{"R-G", "P-R", "R-B", "A-task"}));
-}
+bool same(Rgb a, Rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 
 TEST(Pool, SumsRunsAndMeansOfGroups) {
   Matrix matrix;
@@ -192,14 +183,14 @@ TEST(Heatmap, NothingIsClippedAndLabelsKeepApart) {
       HeatmapStyle style;
       style.scale = scale;
       style.title = side % 2 ? "" : "A title that is rather long for a picture of a matrix of this size, and is wrapped";
-      const HeatTable table = pool_matrix(square(side));
-      const HeatmapLayout layout = lay_out_heatmap(table, style, font());
-      const Canvas canvas = draw_heatmap(table, style, font());
+      const HeatFigure matrix = figure(square(side));
+      const HeatmapLayout layout = lay_out_heatmap(matrix, style, font());
+      const Canvas canvas = draw_heatmap(matrix, style, font());
       EXPECT_EQ(canvas.clipped(), 0) << side << " at " << scale;
       EXPECT_EQ(canvas.width(), layout.width);
       EXPECT_EQ(canvas.height(), layout.height);
-      EXPECT_EQ(layout.matrix.width, side * layout.cell);
-      EXPECT_GT(layout.legend.x, layout.matrix.right());
+      EXPECT_EQ(layout.panels[0].matrix.width, side * layout.cell);
+      EXPECT_GT(layout.legend.x, layout.panels[0].matrix.right());
       EXPECT_LE(layout.legend.right(), layout.width);
       const auto nameless = std::count(layout.env_labels.begin(), layout.env_labels.end(), "") +
                             std::count(layout.task_labels.begin(), layout.task_labels.end(), "");
@@ -216,7 +207,7 @@ TEST(Heatmap, ValuesStandInTheCellsUpToFiftyAtTheDefaultScale) {
   const auto value_size = [](int side, bool values) {
     HeatmapStyle style;
     style.values = values;
-    return lay_out_heatmap(pool_matrix(square(side)), style, font()).value_size;
+    return lay_out_heatmap(figure(square(side)), style, font()).value_size;
   };
   EXPECT_GE(value_size(50, true), 14);
   EXPECT_EQ(value_size(50, false), 0);
@@ -224,11 +215,11 @@ TEST(Heatmap, ValuesStandInTheCellsUpToFiftyAtTheDefaultScale) {
 }
 
 TEST(Heatmap, LongNamesFit) {
-  const HeatTable table = pool_matrix(square(5, std::string(300, 'e'), "put the tomato and the mug and the plate into the fridge "));
-  const Canvas canvas = draw_heatmap(table, {}, font());
+  const HeatFigure matrix = figure(square(5, std::string(300, 'e'), "put the tomato and the mug and the plate into the fridge "));
+  const Canvas canvas = draw_heatmap(matrix, {}, font());
   EXPECT_EQ(canvas.clipped(), 0);
   EXPECT_LT(canvas.width(), 1500);
-  const HeatmapLayout layout = lay_out_heatmap(table, {}, font());
+  const HeatmapLayout layout = lay_out_heatmap(matrix, {}, font());
   EXPECT_TRUE(layout.env_labels_up);
   EXPECT_EQ(std::set<std::string>(layout.env_labels.begin(), layout.env_labels.end()).size(), 5u);
 }
@@ -236,13 +227,13 @@ TEST(Heatmap, LongNamesFit) {
 TEST(Heatmap, CellsHaveTheirRampsColourAndMissingPairsAreEmpty) {
   Matrix matrix;
   matrix.rows = {row("a", "x", true, 80), row("b", "x", false, 80), row("a", "y", true, 20)};
-  const HeatTable table = pool_matrix(matrix);
   HeatmapStyle style;
   style.values = false;
-  const Canvas canvas = draw_heatmap(table, style, font());
-  const HeatmapLayout layout = lay_out_heatmap(table, style, font());
+  const Canvas canvas = draw_heatmap(figure(matrix), style, font());
+  const HeatmapLayout layout = lay_out_heatmap(figure(matrix), style, font());
+  const Box box = layout.panels[0].matrix;
   const auto middle = [&](int task, int env) {
-    return canvas.at(layout.matrix.x + env * layout.cell + layout.cell / 2, layout.matrix.y + task * layout.cell + layout.cell / 3);
+    return canvas.at(box.x + env * layout.cell + layout.cell / 2, box.y + task * layout.cell + layout.cell / 3);
   };
   const Scheme& scheme = find_scheme("safe");
   EXPECT_TRUE(same(middle(0, 0), ramp_colour(scheme.seen, 0.8)));
@@ -252,11 +243,11 @@ TEST(Heatmap, CellsHaveTheirRampsColourAndMissingPairsAreEmpty) {
 }
 
 TEST(Heatmap, SameBytesEveryTime) {
-  const HeatTable table = pool_matrix(square(7));
+  const HeatFigure matrix = figure(square(7));
   const Font another;
-  const std::string first = draw_heatmap(table, {}, font()).png();
+  const std::string first = draw_heatmap(matrix, {}, font()).png();
   EXPECT_EQ(first.substr(1, 3), "PNG");
-  EXPECT_EQ(first, draw_heatmap(table, {}, another).png());
+  EXPECT_EQ(first, draw_heatmap(matrix, {}, another).png());
   // No chunk that could hold a date or a host.
   for (const char* chunk : {"tIME", "tEXt", "iTXt", "zTXt"}) EXPECT_EQ(first.find(chunk), std::string::npos);
 }
@@ -265,7 +256,7 @@ TEST(Heatmap, TooLargeAPictureIsRefused) {
   HeatmapStyle style;
   style.cell_pt = 200;
   style.scale = 16;
-  EXPECT_THROW(draw_heatmap(pool_matrix(square(20)), style, font()), Error);
+  EXPECT_THROW(draw_heatmap(figure(square(20)), style, font()), Error);
 }
 
 TEST(Maps, AllBuiltinMazesFitInAGrid) {
