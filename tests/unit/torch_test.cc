@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <sstream>
 
 #include "format/safetensors.h"
 #include "nn/adam.h"
@@ -45,6 +46,11 @@ PolicyShape shape_of(const SafeTensors& dump) {
   shape.basis = size("basis");
   shape.embedding = size("embedding");
   shape.hidden = size("hidden");
+  shape.action_embedding = size("action_embedding");
+  shape.head_hidden = size("head_hidden");
+  shape.seam = size("seam");
+  const std::string& loss = dump.meta("sf_loss");
+  shape.sf_loss = loss == "td" ? SfLoss::kTemporalDifference : loss == "q" ? SfLoss::kPlannerQ : SfLoss::kCrossEntropy;
   return shape;
 }
 
@@ -74,8 +80,7 @@ Worst compare_with_dump(const std::string& path) {
   Worst worst;
   Input input(path);
   const SafeTensors dump = read_safetensors(input);
-  const PolicyShape shape = shape_of(dump);
-  Network<float> net(shape);
+  Network<float> net(shape_of(dump), dump.meta("method"));
   const Layout& layout = net.policy->parameters();
   size_t tensors = 0;
   for (const auto& [name, tensor] : dump.tensors) tensors += name.starts_with("param.");
@@ -90,7 +95,13 @@ Worst compare_with_dump(const std::string& path) {
   const std::vector<int> env = whole_numbers(dump, "env"), task = whole_numbers(dump, "task"), label = whole_numbers(dump, "label"),
                          taken = whole_numbers(dump, "taken");
   const std::vector<float> reward = dump.get<float>("reward");
-  const StepBatch<float> batch = {int(env.size()), pictures.data(), env.data(), task.data(), label.data(), taken.data(), reward.data()};
+  StepBatch<float> batch = {int(env.size()), pictures.data(), env.data(), task.data(), label.data(), taken.data(), reward.data()};
+  std::vector<int> next;
+  std::vector<float> planner_q;
+  if (dump.meta("method") == "sf") {
+    batch.next = (next = whole_numbers(dump, "next")).data();
+    batch.planner_q = (planner_q = dump.get<float>("planner_q")).data();
+  }
   const auto number = [&](const char* name) { return std::atof(dump.meta(name).c_str()); };
   // No input of a ReLU in the file is so near zero that a float's rounding changes its sign. Coarser products do change some, and gradients with
   // them: of those, only what stands before the gradients is compared.
@@ -102,12 +113,15 @@ Worst compare_with_dump(const std::string& path) {
   };
 
   Parallel parallel(1);
-  const Losses losses = net.step(parallel, batch, {number("weight_reward"), number("weight_env"), number("weight_task")});
+  const Losses losses = net.step(parallel, batch, {number("weight_reward"), number("weight_env"), number("weight_task"), 0, number("discount")});
   const double got[5] = {losses.total, losses.policy, losses.reward, losses.env, losses.task};
   const std::vector<double> want = dump.get<double>("loss");
-  for (int i = 0; i < 5; ++i) worst.add("loss", "number " + std::to_string(i), relative_error(got + i, want.data() + i, 1), limit);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(std::isnan(got[i]), std::isnan(want[i])) << i;
+    if (!std::isnan(want[i])) worst.add("loss", "number " + std::to_string(i), relative_error(got + i, want.data() + i, 1), limit);
+  }
   compare("logits", "logits", net.logits.data());
-  compare("psi", "psi", dynamic_cast<SynPo<float>&>(*net.policy).last_feature());
+  if (const auto* synpo = dynamic_cast<const SynPo<float>*>(net.policy.get())) compare("psi", "psi", synpo->last_feature());
   if (coarse) return worst;
   for (const TensorInfo& tensor : layout.tensors()) compare("gradient", "grad." + tensor.name, net.gradient.data() + tensor.offset);
   for (const TensorInfo& tensor : net.policy->statistics().tensors()) compare("statistics", "after." + tensor.name, net.statistics.data() + tensor.offset);
@@ -137,17 +151,25 @@ Worst compare_with_dump(const std::string& path) {
   return worst;
 }
 
-// SYNPO_TORCH_DUMP names another dump to compare with, for instance one at full width.
-TEST(SynPo, AgreesWithPyTorch) {
-  const char* path = std::getenv("SYNPO_TORCH_DUMP");
-  for_every_target([&](const std::string& target) {
-    const Worst narrow = compare_with_dump("tests/data/torch_narrow.safetensors");
-    if (!path) return;
-    std::printf("%s, narrow\n", target.c_str());
-    narrow.print();
-    std::printf("%s, %s\n", target.c_str(), path);
-    compare_with_dump(path).print();
-  });
+class Torch : public testing::TestWithParam<const char*> {};
+// The files of torch_reference.py's COMMITTED.
+INSTANTIATE_TEST_SUITE_P(Dump, Torch, testing::Values("narrow", "general", "mtl", "mtl_general", "mlp", "modulenet", "sf_td", "sf_q", "sf_ce"),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(Torch, AgreesOnLossGradientsAndAdam) {
+  for_every_target([&](const std::string&) { compare_with_dump(std::string("tests/data/torch_") + GetParam() + ".safetensors"); });
+}
+
+// SYNPO_TORCH_DUMP names other dumps to compare with, separated by colons, for instance those at full width.
+TEST(TorchDump, AgreesOnLossGradientsAndAdam) {
+  const char* paths = std::getenv("SYNPO_TORCH_DUMP");
+  if (!paths) GTEST_SKIP() << "no SYNPO_TORCH_DUMP";
+  std::stringstream list(paths);
+  for (std::string path; std::getline(list, path, ':');)
+    for_every_target([&](const std::string& target) {
+      std::printf("%s, %s\n", target.c_str(), path.c_str());
+      compare_with_dump(path).print();
+    });
 }
 
 }  // namespace
