@@ -47,7 +47,7 @@ const Hyper kHypers[] = {
     {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
     {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
     {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
-    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
+    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1); sf: 1", "The losses"},
     {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
     {"task-loss", &O::task_loss, 0, 1e6, false, "weight of task disentanglement (lambda 3)"},
     {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},

@@ -36,8 +36,7 @@ void Sf<T>::initialise(const InitOptions& options, T* parameters, T* statistics)
 template <class T>
 void Sf<T>::make_input(const T* feature, int env, int task, T* x) const {
   x = std::copy_n(feature, shape_.feature, x);
-  x = std::copy_n(env_.row(env), shape_.embedding, x);
-  std::copy_n(task_.row(task), shape_.embedding, x);
+  task_.put(task, env_.put(env, x));
 }
 
 template <class T>
@@ -137,8 +136,7 @@ Losses Sf<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeig
   for (int i = 0; i < n; ++i) {
     const T* from = dx + size_t(i) * in;
     for (int c = 0; c < d; ++c) dfeature[size_t(i) * d + c] += *from++;
-    for (T* to : {env_.gradient_row(batch.env[i]), task_.gradient_row(batch.task[i])})
-      for (int c = 0; c < width; ++c) to[c] += *from++;
+    task_.add_gradient(batch.task[i], env_.add_gradient(batch.env[i], from));
   }
   env_.backward(parameters, gradient);
   task_.backward(parameters, gradient);

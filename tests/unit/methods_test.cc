@@ -60,14 +60,20 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const au
 
 constexpr double kDropout = 0.3;
 
+// SF's temporal difference holds its targets fixed, so that its gradient is none of its loss; but where they are constant it is: with phi
+// constant, and nothing behind. phi's own gradient has a test below.
 TEST_P(Methods, GradientsAreFiniteDifferences) {
-  if (GetParam().temporal_difference()) GTEST_SKIP() << "no gradient of its loss: the targets are held fixed";
   Network<double> net = network<double>();
   net.shake();
-  const RandomSteps<double> steps(14, GetParam().shape(), 5);
+  const PolicyShape shape = GetParam().shape();
+  const RandomSteps<double> steps(14, shape, 5);
+  const bool fixed = GetParam().temporal_difference();
+  if (fixed) std::fill_n(net.parameter("phi.out.weight"), shape.head_hidden * shape.actions * shape.embedding, 0.0);
   for (const double dropout : {0.0, kDropout}) {
     if (dropout > 0 && GetParam().method != "modulenet") continue;
-    expect_finite_differences(net, steps.batch(), {0.3, 0.5, 0.7, dropout});
+    expect_finite_differences(
+        net, steps.batch(), {0.3, 0.5, 0.7, dropout, /*discount=*/0}, [](const Losses& losses) { return losses.total; },
+        [&](const std::string& name) { return !fixed || !name.starts_with("phi."); });
   }
 }
 
@@ -270,13 +276,10 @@ TEST(ModuleNet, ModulesThatABatchLacksGetNoGradient) {
   }
 }
 
-// The temporal difference's gradient holds targets fixed. A phi that is constant makes the targets of last steps constant, and the gradient a
-// true one.
 struct TemporalDifference {
-  explicit TemporalDifference(bool constant_phi) {
+  TemporalDifference() {
     net.initialise();
     net.shake();
-    if (constant_phi) std::fill_n(net.parameter("phi.out.weight"), shape.head_hidden * shape.actions * shape.embedding, 0.0);
   }
   std::vector<double> gradient(const LossWeights& weights) {
     const std::vector<double> statistics = net.statistics;
@@ -294,10 +297,10 @@ struct TemporalDifference {
 LossWeights discounted(double discount, double reward = 0.3) { return {reward, 0, 0, 0, discount}; }
 
 TEST(SfTemporalDifference, IsTheLossByHand) {
-  TemporalDifference sf(true);
+  TemporalDifference sf;
   const PolicyShape& shape = sf.shape;
   const size_t width = shape.embedding;
-  std::fill_n(sf.net.parameter("psi.out.weight"), shape.head_hidden * shape.actions * width, 0.0);
+  for (const char* weight : {"phi.out.weight", "psi.out.weight"}) std::fill_n(sf.net.parameter(weight), shape.head_hidden * shape.actions * width, 0.0);
   const double *phi = sf.net.parameter("phi.out.bias"), *psi = sf.net.parameter("psi.out.bias"), *task = sf.net.parameter("embedding.task");
   const auto value = [&](int action, const double* features, int of_task) {
     return std::inner_product(features + action * width, features + (action + 1) * width, task + of_task * width, 0.0);
@@ -325,22 +328,15 @@ TEST(SfTemporalDifference, IsTheLossByHand) {
     for (int a = 0; a < shape.actions; ++a) EXPECT_NEAR(sf.net.logits[i * 5 + a], value(a, psi, steps.task[i]), 1e-12);
 }
 
-TEST(SfTemporalDifference, GradientIsFiniteDifferencesWhereTargetsAreConstant) {
-  TemporalDifference sf(true);
-  // phi's own gradient is tested below.
-  const auto not_phi = [](const std::string& name) { return !name.starts_with("phi."); };
-  expect_finite_differences(sf.net, sf.steps.batch(), discounted(0), [](const Losses& losses) { return losses.total; }, not_phi);
-}
-
 TEST(SfTemporalDifference, PhiLearnsFromTheRewardAlone) {
-  TemporalDifference sf(false);
+  TemporalDifference sf;
   expect_finite_differences(sf.net, sf.steps.batch(), discounted(0.9, 0.3), [](const Losses& losses) { return 0.3 * losses.reward; },
                             [](const std::string& name) { return name.starts_with("phi."); });
 }
 
 TEST(SfTemporalDifference, TargetsAreHeldFixed) {
   // The loss is quadratic in the discount, and so is its own gradient; with targets held fixed it is linear.
-  TemporalDifference sf(false);
+  TemporalDifference sf;
   const std::vector<double> none = sf.gradient(discounted(0)), half = sf.gradient(discounted(0.5)), whole = sf.gradient(discounted(1));
   std::vector<double> between(none.size());
   for (size_t i = 0; i < none.size(); ++i) between[i] = (none[i] + whole[i]) / 2;
@@ -349,7 +345,7 @@ TEST(SfTemporalDifference, TargetsAreHeldFixed) {
 }
 
 TEST(SfTemporalDifference, ABatchOfUnknownStepsTeachesTheRewardAlone) {
-  TemporalDifference sf(false);
+  TemporalDifference sf;
   std::fill(sf.steps.next.begin(), sf.steps.next.end(), StepBatch<double>::kUnknown);
   sf.gradient(discounted(0.9));
   EXPECT_EQ(sf.losses.policy, 0);

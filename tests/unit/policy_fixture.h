@@ -136,8 +136,4 @@ void expect_finite_differences(Network<double>& net, const StepBatch<double>& ba
   EXPECT_GT(checked, 0);
 }
 
-inline void expect_finite_differences(Network<double>& net, const StepBatch<double>& batch, const LossWeights& weights) {
-  expect_finite_differences(net, batch, weights, [](const Losses& losses) { return losses.total; }, [](const std::string&) { return true; });
-}
-
 }  // namespace synpo
