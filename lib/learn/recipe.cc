@@ -62,7 +62,8 @@ const Hyper kHypers[] = {
      "Single methods", {}, true},
     {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true},
     {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true},
-    {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr, {"td", "q", "ce"}, true},
+    {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr,
+     {"td", "q", "ce"}, true},
     {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true},
 };
 

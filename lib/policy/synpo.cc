@@ -222,10 +222,11 @@ void SynPo<T>::prepare_inference(Parallel& parallel, const T* parameters, const 
 template <class T>
 void SynPo<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
   const T* parameters = frozen_parameters_.data();
-  std::vector<T> psi(size_t(size) * shape_.feature), q(size_t(size) * form_.columns());
+  const int d = shape_.feature, columns = form_.columns();
+  std::vector<T> psi(size_t(size) * d), q(size_t(size) * columns);
   encoder_.infer(thread, size, pictures, psi.data());
   for (int i = 0; i < size; ++i)
-    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * shape_.feature, q.data() + size_t(i) * form_.columns());
+    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * d, q.data() + size_t(i) * columns);
   form_.scores(size, q.data(), parameters, logits);
   kernels<T>().add_bias(size, shape_.actions, parameters + bias_[kPolicy], false, logits);
 }

@@ -94,7 +94,10 @@ TEST_P(Methods, EveryLossCountsByItsWeight) {
   };
   const std::vector<double> none = gradient({0, 0, 0});
   std::vector<double> sum = none;
-  for (const auto& [weights, loss] : {std::pair{LossWeights{2, 0, 0}, losses.reward}, {LossWeights{0, 3, 0}, losses.env}, {LossWeights{0, 0, 4}, losses.task}}) {
+  const Losses at_none = losses;
+  for (const auto& [weights, loss] : {std::pair{LossWeights{2, 0, 0}, at_none.reward},
+                                      {LossWeights{0, 3, 0}, at_none.env},
+                                      {LossWeights{0, 0, 4}, at_none.task}}) {
     const std::vector<double> one = gradient(weights);
     if (std::isnan(loss))
       EXPECT_EQ(one, none);
@@ -300,7 +303,8 @@ TEST(SfTemporalDifference, IsTheLossByHand) {
   TemporalDifference sf;
   const PolicyShape& shape = sf.shape;
   const size_t width = shape.embedding;
-  for (const char* weight : {"phi.out.weight", "psi.out.weight"}) std::fill_n(sf.net.parameter(weight), shape.head_hidden * shape.actions * width, 0.0);
+  for (const char* weight : {"phi.out.weight", "psi.out.weight"})
+    std::fill_n(sf.net.parameter(weight), shape.head_hidden * shape.actions * width, 0.0);
   const double *phi = sf.net.parameter("phi.out.bias"), *psi = sf.net.parameter("psi.out.bias"), *task = sf.net.parameter("embedding.task");
   const auto value = [&](int action, const double* features, int of_task) {
     return std::inner_product(features + action * width, features + (action + 1) * width, task + of_task * width, 0.0);

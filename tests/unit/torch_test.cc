@@ -164,7 +164,8 @@ std::vector<std::string> dumps() {
 }
 
 class Torch : public testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Dump, Torch, testing::ValuesIn(dumps()), [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Dump, Torch, testing::ValuesIn(dumps()),
+                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
 
 TEST_P(Torch, AgreesOnLossGradientsAndAdam) {
   for_every_target([](const std::string& target) {
