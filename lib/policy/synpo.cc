@@ -216,19 +216,19 @@ void SynPo<T>::prepare_inference(Parallel& parallel, const T* parameters, const 
   encoder_.prepare_inference(parallel, parameters, statistics);
   use_embeddings(parameters);
   compose(parallel, parameters, pairs);
-  frozen_parameters_.assign(parameters, parameters + this->parameters_.total());
+  form_.prepare_inference(parameters);
+  policy_bias_.assign(parameters + bias_[kPolicy], parameters + bias_[kPolicy] + shape_.actions);
 }
 
 template <class T>
 void SynPo<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  const T* parameters = frozen_parameters_.data();
   const int d = shape_.feature, columns = form_.columns();
   std::vector<T> psi(size_t(size) * d), q(size_t(size) * columns);
   encoder_.infer(thread, size, pictures, psi.data());
   for (int i = 0; i < size; ++i)
     form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * d, q.data() + size_t(i) * columns);
-  form_.scores(size, q.data(), parameters, logits);
-  kernels<T>().add_bias(size, shape_.actions, parameters + bias_[kPolicy], false, logits);
+  form_.infer(size, q.data(), logits);
+  kernels<T>().add_bias(size, shape_.actions, policy_bias_.data(), false, logits);
 }
 
 template class SynPo<float>;

@@ -212,19 +212,24 @@ class Head {
         dcoefficients_(coefficients_.size()) {
     InitStream stream(1, 1);
     form_.initialise(stream, parameters_.data());
+    form_.prepare_inference(parameters_.data());
     compose();
   }
   void compose() { form_.compose(parallel_, kPairs, coefficients_.data(), parameters_.data(), w_.data()); }
-  void infer() {
+  void apply() {
     for_pairs([&](size_t p, size_t i) { form_.apply(w(p), psi_.data() + i * kFeature, q_.data() + i * form_.columns()); });
-    for_units([&](int rows, size_t i) {
-      form_.scores(rows, q_.data() + i * form_.columns(), parameters_.data(), scores_.data() + i * form_.actions());
-    });
+  }
+  void infer() {
+    apply();
+    for_units([&](int rows, size_t i) { form_.infer(rows, q_.data() + i * form_.columns(), scores_.data() + i * form_.actions()); });
   }
   // The scores stand for their own gradient.
   void train() {
     compose();
-    infer();
+    apply();
+    for_units([&](int rows, size_t i) {
+      form_.scores(rows, q_.data() + i * form_.columns(), parameters_.data(), scores_.data() + i * form_.actions());
+    });
     gradient_.zero();
     dw_.zero();
     for_units([&](int rows, size_t i) {

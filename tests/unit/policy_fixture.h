@@ -121,7 +121,9 @@ void expect_finite_differences(Network<double>& net, const StepBatch<double>& ba
     for (size_t i = 0; i < tensor.size; ++i) norm += std::pow(gradient[tensor.offset + i], 2) / tensor.size;
     norm = std::sqrt(norm);
     EXPECT_GT(norm, 1e-6) << tensor.name;
-    for (int draw = 0; draw < 8; ++draw) {
+    // The encoder, whose tensors are most, is the same in every method.
+    const int draws = tensor.name.starts_with("encoder.") ? 4 : 8;
+    for (int draw = 0; draw < draws; ++draw) {
       const size_t at = tensor.offset + random.below(uint32_t(tensor.size));
       const double kept = net.parameters[at];
       net.parameters[at] = kept + kStep;
