@@ -1,14 +1,14 @@
 #!/usr/bin/python3
 """The imitation-learning step of synpo in PyTorch: the reference of the C++ engine.
 
-  torch_reference.py dump -o FILE [--batch N] [--seed S] [widths]
+  torch_reference.py dump -o FILE [--method NAME] [--batch N] [--seed S] [widths]
       one training step in float64 on a random model and batch, as safetensors
   torch_reference.py check FILE
       the same step in float32 from the file's parameters and inputs, against the file's results
   torch_reference.py bench --mode train|forward --batch N --threads T [--seconds S]
       states per second in float32 at full width, one number on stdout
-
-The committed tests/data/torch_narrow.safetensors is `dump` with its defaults.
+  torch_reference.py committed -o tests/data
+      the dumps that are in the tree
 """
 import argparse
 import copy
@@ -21,6 +21,7 @@ import statistics
 import struct
 import sys
 import time
+from types import SimpleNamespace
 
 # A caller's OPENBLAS_CORETYPE or the like would slow PyTorch down unnoticed. Read when torch is loaded.
 for key in [k for k in os.environ if k.startswith("OPENBLAS_")]:
@@ -36,14 +37,23 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 ACTIONS = 5
 STRIDES = (2, 2, 2, 1)
-NARROW = dict(channels=(8, 16, 24, 32), feature=16, basis=12, embedding=10, hidden=24, envs=4, tasks=5)
-FULL = dict(channels=(32, 64, 128, 256), feature=128, basis=128, embedding=128, hidden=512, envs=20, tasks=20)
+NARROW = dict(channels=(8, 16, 24, 32), feature=16, basis=12, embedding=10, hidden=24, action_embedding=0, head_hidden=20, seam=6,
+              envs=4, tasks=5)
+FULL = dict(channels=(32, 64, 128, 256), feature=128, basis=128, embedding=128, hidden=512, action_embedding=0, head_hidden=1024,
+            seam=32, envs=20, tasks=20)
+SMALL = "--channels 4,4,4,5 "
+COMMITTED = dict(narrow="", general=SMALL + "--action-embedding 3", mtl=SMALL + "--method mtl",
+                 mtl_general=SMALL + "--method mtl --action-embedding 7", mlp=SMALL + "--method mlp",
+                 modulenet=SMALL + "--method modulenet", sf_td=SMALL + "--method sf", sf_q=SMALL + "--method sf --sf-loss q",
+                 sf_ce=SMALL + "--method sf --sf-loss ce")
 REWARD_WEIGHT = 0.01
+DISCOUNT = 0.9
+TERMINAL, UNKNOWN = -1, -2  # in place of the step behind
 ADAM = dict(lr=0.001, betas=(0.9, 0.999), eps=1e-8, weight_decay=0.001)
 ADAM_LIMIT = 2100  # larger tensors get no adam.NAME, which keeps the committed file small
 
 
-# --- the model -----------------------------------------------------------------------------------
+# --- the methods ---------------------------------------------------------------------------------
 
 class Block(nn.Module):
     """conv norm relu conv norm, plus the shortcut, relu; a stage's first block changes the shape."""
@@ -96,34 +106,67 @@ class Mlp(nn.Module):
         return self.out(self.relu(self.hidden(x)))
 
 
-class SynPo(nn.Module):
-    def __init__(self, channels, feature, basis, embedding, hidden, envs, tasks):
+def empty(*shape):
+    return nn.Parameter(torch.zeros(*shape))
+
+
+class Policy(nn.Module):
+    """What methods share: encoder, embeddings (of "env", "task"), the losses of reward and disentanglement.
+
+    A method has outputs(batch): logits and whatever its losses(batch) needs; losses by name, without weights."""
+
+    def __init__(self, w, embeddings):
         super().__init__()
-        empty = lambda *shape: nn.Parameter(torch.zeros(*shape))
-        self.encoder = Encoder(channels, feature)
-        self.embedding = nn.ParameterDict({"env": empty(envs, embedding), "task": empty(tasks, embedding)})
-        self.alpha = Mlp(2 * embedding, hidden, basis)
-        self.beta = Mlp(2 * embedding, hidden, basis)
-        self.theta = empty(ACTIONS, feature, basis)
+        self.w = w
+        self.encoder = Encoder(w.channels, w.feature)
+        if embeddings:
+            self.embedding = nn.ParameterDict({name: empty(getattr(w, name + "s"), w.embedding) for name in embeddings})
+
+    def embedded(self, batch):
+        return torch.cat([table[batch[name]] for name, table in self.embedding.items()], 1)
+
+    def told(self, x, name, batch):
+        """The loss of telling from f(x) what environment, or task, it comes from."""
+        return F.cross_entropy(getattr(self, "f_" + name)(x) @ self.embedding[name].t(), batch[name])
+
+    def summed(self):
+        """Perceptrons whose outputs go into a sum, with its number of terms."""
+        return ()
+
+
+class SynPo(Policy):
+    def __init__(self, w, embeddings=("env", "task")):
+        super().__init__(w, embeddings)
+        self.alpha = Mlp(len(embeddings) * w.embedding, w.hidden, w.basis)
+        self.beta = Mlp(len(embeddings) * w.embedding, w.hidden, w.basis)
+        self.theta = empty(w.action_embedding or ACTIONS, w.feature, w.basis)
+        if w.action_embedding:
+            self.phi = empty(ACTIONS, w.action_embedding)
         self.policy = nn.ParameterDict({"bias": empty(ACTIONS)})
         self.reward = nn.ParameterDict({"bias": empty(ACTIONS)})
-        self.f_env = Mlp(basis, hidden, embedding)
-        self.f_task = Mlp(basis, hidden, embedding)
+        for name in embeddings:
+            self.add_module("f_" + name, Mlp(w.basis, w.hidden, w.embedding))
 
-    def pairs(self, env, task):
-        """Distinct pairs as one embedding row each [P, 2*embedding], and each state's pair [N]."""
-        tasks = len(self.embedding["task"])
-        pairs, index = torch.unique(env * tasks + task, return_inverse=True)
-        env, task = torch.div(pairs, tasks, rounding_mode="floor"), pairs % tasks
-        return torch.cat([self.embedding["env"][env], self.embedding["task"][task]], 1), index
+    def summed(self):
+        return [(self.alpha, self.w.basis), (self.beta, self.w.basis)] + [(getattr(self, "f_" + n), self.w.embedding) for n in self.embedding]
+
+    def pairs(self, batch):
+        """Distinct pairs (for MTL tasks) as one row of embeddings each [P, E], and each state's row [N]."""
+        pairs, index = torch.unique(torch.stack([batch[name] for name in self.embedding], 1), dim=0, return_inverse=True)
+        return self.embedded(dict(zip(self.embedding, pairs.t()))), index
+
+    def matrices(self):
+        """Theta phi(a): [A, d, K]."""
+        return torch.einsum("aD,Ddk->adk", self.phi, self.theta) if self.w.action_embedding else self.theta
 
     def products(self, psi):
-        """psi^T theta[a,:,k] for every action: [N, A, K]."""
-        actions, feature, basis = self.theta.shape
-        return (psi @ self.theta.permute(1, 0, 2).reshape(feature, actions * basis)).view(-1, actions, basis)
+        """psi^T Theta phi(a) for every action: [N, A, K]."""
+        theta = self.matrices()
+        actions, feature, basis = theta.shape
+        return (psi @ theta.permute(1, 0, 2).reshape(feature, actions * basis)).view(-1, actions, basis)
 
     # Three ways to the same logits; bench keeps the fastest. A head takes psi [N, d], the products or None,
-    # coefficients [P, K], each state's pair [N], and returns psi^T (sum_k coefficient_k theta[a,:,k]) as [N, A].
+    # coefficients [P, K], each state's pair [N], and returns psi^T (sum_k coefficient_k Theta_k) phi(a) as [N, A].
     def by_sum(self, psi, products, coefficients, index):
         products = self.products(psi) if products is None else products
         return (products * coefficients[index].unsqueeze(1)).sum(2)
@@ -133,37 +176,126 @@ class SynPo(nn.Module):
         return torch.bmm(products, coefficients[index].unsqueeze(2)).squeeze(2)
 
     def by_matrix(self, psi, products, coefficients, index):
-        matrices = coefficients @ self.theta.flatten(0, 1).t()  # U of each pair: [P, A*d]
-        return torch.bmm(matrices[index].view(-1, *self.theta.shape[:2]), psi.unsqueeze(2)).squeeze(2)
-
-    HEADS = (by_sum, by_bmm, by_matrix)
+        theta = self.matrices()
+        composed = coefficients @ theta.flatten(0, 1).t()  # U of each pair: [P, A*d]
+        return torch.bmm(composed[index].view(-1, *theta.shape[:2]), psi.unsqueeze(2)).squeeze(2)
 
     def logits(self, batch, head=by_sum):
-        pairs, index = self.pairs(batch["env"], batch["task"])
+        pairs, index = self.pairs(batch)
         return head(self, self.encoder(batch["input"]), None, self.alpha(pairs), index) + self.policy["bias"]
 
-    def losses(self, batch, weights, head=by_sum):
-        """(total, policy, reward, env, task), logits, psi."""
+    def losses(self, batch, head=by_sum):
         psi = self.encoder(batch["input"])
         products = self.products(psi)
-        pairs, index = self.pairs(batch["env"], batch["task"])
-        rows = torch.arange(len(psi))
+        pairs, index = self.pairs(batch)
+        rows, taken = torch.arange(len(psi)), batch["taken"]
         logits = head(self, psi, products, self.alpha(pairs), index) + self.policy["bias"]
-        taken = batch["taken"]
         reward = (products[rows, taken] * self.beta(pairs)[index]).sum(1) + self.reward["bias"][taken]
         x = products[rows, batch["label"]]
-        policy_loss = F.cross_entropy(logits, batch["label"])
-        reward_loss = F.mse_loss(reward, batch["reward"])
-        env_loss = F.cross_entropy(self.f_env(x) @ self.embedding["env"].t(), batch["env"])
-        task_loss = F.cross_entropy(self.f_task(x) @ self.embedding["task"].t(), batch["task"])
-        total = policy_loss + REWARD_WEIGHT * reward_loss + weights[0] * env_loss + weights[1] * task_loss
-        return (total, policy_loss, reward_loss, env_loss, task_loss), logits, psi
+        losses = dict(policy=F.cross_entropy(logits, batch["label"]), reward=F.mse_loss(reward, batch["reward"]))
+        return {**losses, **{name: self.told(x, name, batch) for name in self.embedding}}, logits, psi
+
+
+class MultiTask(SynPo):
+    def __init__(self, w):
+        super().__init__(w, ("task",))
+
+
+class OneMlp(Policy):
+    def __init__(self, w):
+        super().__init__(w, ("env", "task"))
+        self.policy = Mlp(w.feature + 2 * w.embedding, w.head_hidden, ACTIONS)
+        self.reward = Mlp(w.feature + 2 * w.embedding, w.head_hidden, ACTIONS)
+        self.f_env = Mlp(w.feature, w.hidden, w.embedding)
+        self.f_task = Mlp(w.feature, w.hidden, w.embedding)
+
+    def summed(self):
+        return (self.f_env, self.w.embedding), (self.f_task, self.w.embedding)
+
+    def logits(self, batch):
+        return self.policy(torch.cat([F.normalize(self.encoder(batch["input"])), self.embedded(batch)], 1))
+
+    def losses(self, batch):
+        psi = self.encoder(batch["input"])
+        unit = F.normalize(psi)
+        x = torch.cat([unit, self.embedded(batch)], 1)
+        logits = self.policy(x)
+        reward = self.reward(x)[torch.arange(len(x)), batch["taken"]]
+        losses = dict(policy=F.cross_entropy(logits, batch["label"]), reward=F.mse_loss(reward, batch["reward"]))
+        return {**losses, "env": self.told(unit, "env", batch), "task": self.told(unit, "task", batch)}, logits, psi
+
+
+class ModuleNet(Policy):
+    """Without dropout: its random numbers are not ours."""
+
+    def __init__(self, w):
+        super().__init__(w, ())
+        modules = {f"task{i}": Mlp(w.feature, w.head_hidden, w.seam) for i in range(w.tasks)}
+        modules.update({f"env{i}": Mlp(w.seam, w.head_hidden, ACTIONS) for i in range(w.envs)})
+        self.module = nn.ModuleDict(modules)
+
+    def each(self, kind, x, batch):
+        return torch.stack([self.module[f"{kind}{key}"](row) for key, row in zip(batch[kind].tolist(), x)])
+
+    def scores(self, psi, batch):
+        return self.each("env", self.each("task", psi, batch), batch)
+
+    def logits(self, batch):
+        return self.scores(self.encoder(batch["input"]), batch)
+
+    def losses(self, batch):
+        psi = self.encoder(batch["input"])
+        logits = self.scores(psi, batch)
+        return dict(policy=F.cross_entropy(logits, batch["label"])), logits, psi
+
+
+class SuccessorFeatures(Policy):
+    def __init__(self, w):
+        super().__init__(w, ("env", "task"))
+        self.phi = Mlp(w.feature, w.head_hidden, ACTIONS * w.embedding)
+        self.psi = Mlp(w.feature + 2 * w.embedding, w.head_hidden, ACTIONS * w.embedding)
+
+    def summed(self):
+        return (self.phi, self.w.embedding), (self.psi, self.w.embedding)
+
+    def features(self, feature, batch):
+        """psi(s, a; z): [N, A, E]."""
+        return self.psi(torch.cat([feature, self.embedded(batch)], 1)).view(len(feature), ACTIONS, -1)
+
+    def values(self, psi, batch):
+        return (psi * self.embedding["task"][batch["task"]].unsqueeze(1)).sum(2)
+
+    def logits(self, batch):
+        return self.values(self.features(self.encoder(batch["input"]), batch), batch)
+
+    def temporal_difference(self, phi, psi, batch):
+        behind = batch["next"].clamp(min=0)
+        psi_behind = psi[behind, batch["label"][behind]] * (batch["next"] != TERMINAL).unsqueeze(1)
+        taken = psi[torch.arange(len(psi)), batch["taken"]]
+        known = batch["next"] != UNKNOWN
+        return F.mse_loss(taken[known], (phi + DISCOUNT * psi_behind)[known].detach())
+
+    def losses(self, batch):
+        feature = self.encoder(batch["input"])
+        phi = self.phi(feature).view(len(feature), ACTIONS, -1)[torch.arange(len(feature)), batch["taken"]]
+        psi = self.features(feature, batch)
+        q = self.values(psi, batch)
+        policy_loss = {"td": lambda: self.temporal_difference(phi, psi, batch), "q": lambda: F.mse_loss(q, batch["planner_q"]),
+                       "ce": lambda: F.cross_entropy(q, batch["label"])}[self.w.sf_loss]()
+        reward = (phi * self.embedding["task"][batch["task"]]).sum(1)
+        return dict(policy=policy_loss, reward=F.mse_loss(reward, batch["reward"])), q, feature
+
+
+METHODS = dict(synpo=SynPo, mtl=MultiTask, mlp=OneMlp, modulenet=ModuleNet, sf=SuccessorFeatures)
+
+
+def total(losses, weights):
+    return sum(weights[name] * loss for name, loss in losses.items())
 
 
 def randomise(net, generator):
     """Random parameters under which activations are O(1) and nothing is zero that training would move."""
     normal = lambda p, sd, mean=0.0: p.copy_(mean + sd * torch.randn(p.shape, generator=generator))
-    basis, embedding = net.theta.shape[2], net.embedding["env"].shape[1]
     with torch.no_grad():
         for name, p in net.named_parameters():
             if "norm" in name:
@@ -172,12 +304,12 @@ def randomise(net, generator):
                 normal(p, 0.1)
             elif name.endswith("weight"):
                 normal(p, math.sqrt((1 if "fc" in name else 2) / p[0].numel()))
-            elif name == "theta":
+            elif name in ("theta", "phi"):
                 normal(p, 1 / math.sqrt(p.shape[1]))
             else:
                 normal(p, 1)  # embeddings
-        for head, width in ((net.alpha, basis), (net.beta, basis), (net.f_env, embedding), (net.f_task, embedding)):
-            head.out.weight /= math.sqrt(width)  # its output goes into a sum over that many terms
+        for head, width in net.summed():
+            head.out.weight /= math.sqrt(width)
 
 
 # --- pictures ------------------------------------------------------------------------------------
@@ -216,11 +348,17 @@ def random_batch(count, envs, tasks, rng, pairs=None):
                 reward=rng.choice((-0.01, -0.02, 0.99, 10.99, -10.01), count).astype(np.float32))
 
 
+def future(batch, rng):
+    """What SF's losses ask for besides: the step behind, or what stands in its place, and the planner's values."""
+    count = len(batch["env"])
+    return dict(next=np.concatenate([[TERMINAL, UNKNOWN], rng.integers(0, count, count - 2)]),
+                planner_q=rng.normal(size=(count, ACTIONS)).astype(np.float32))
+
+
 def to_torch(batch, dtype):
     batch = {name: torch.from_numpy(array.copy()) for name, array in batch.items()}
     batch["input"] = batch["input"].permute(0, 3, 1, 2).to(dtype) / 64
-    batch["reward"] = batch["reward"].to(dtype)
-    return batch
+    return {name: tensor.to(dtype) if tensor.is_floating_point() else tensor for name, tensor in batch.items()}
 
 
 # --- files ---------------------------------------------------------------------------------------
@@ -290,11 +428,13 @@ def step_results(net, batch, weights):
     hooks = [module.register_forward_pre_hook(lambda _, x: margins.append(x[0].detach().abs().min().item()))
              for module in net.modules() if isinstance(module, nn.ReLU)]
     net.train()
-    losses, logits, psi = net.losses(batch, weights)
-    losses[0].backward()
-    result = {"loss": np.array([loss.item() for loss in losses]),
+    losses, logits, psi = net.losses(batch)
+    loss = total(losses, weights)
+    loss.backward()
+    result = {"loss": np.array([loss.item()] + [losses[name].item() if name in losses else math.nan for name in weights]),
               "logits": to_file("", logits), "psi": to_file("", psi)}
     for name, p in net.named_parameters():
+        p.grad = torch.zeros_like(p) if p.grad is None else p.grad  # a module without samples
         result["grad." + file_name(name)] = to_file(name, p.grad)
     for name, b in net.named_buffers():
         if "running" in name:
@@ -312,26 +452,29 @@ def step_results(net, batch, weights):
 
 
 def dump(args):
-    widths = {key: getattr(args, key) or value for key, value in (FULL if args.full else NARROW).items()}
+    widths = {key: value if getattr(args, key) is None else getattr(args, key) for key, value in (FULL if args.full else NARROW).items()}
+    shape = SimpleNamespace(**widths, sf_loss=args.sf_loss)
     batch_size = args.batch or (4 if args.full else 6)
-    weights = (args.weight_env, args.weight_task)
+    weights = dict(policy=1, reward=REWARD_WEIGHT, env=args.weight_env, task=args.weight_task)
     for seed in range(args.seed, args.seed + 1000):
         generator = torch.Generator().manual_seed(seed)
-        net = SynPo(**widths)
+        net = METHODS[args.method](shape)
         randomise(net, generator)
         net.double()
         tensors = {"param." + file_name(name): to_file(name, p) for name, p in net.named_parameters()}
-        batch = random_batch(batch_size, widths["envs"], widths["tasks"], np.random.default_rng(seed),
-                             pairs=2 * batch_size // 3 or 1)  # some pairs occur twice
+        rng = np.random.default_rng(seed)
+        batch = random_batch(batch_size, shape.envs, shape.tasks, rng, pairs=2 * batch_size // 3 or 1)  # some pairs occur twice
+        if args.method == "sf":
+            batch.update(future(batch, rng))
         result, margin = step_results(net, to_torch(batch, torch.float64), weights)
         if margin > args.margin:
             break
     else:
         sys.exit("torch_reference: no seed keeps every ReLU input away from zero; lower --margin")
     metadata = {key: ",".join(map(str, value)) if key == "channels" else str(value) for key, value in widths.items()}
-    metadata.update(weight_reward=str(REWARD_WEIGHT), weight_env=str(weights[0]), weight_task=str(weights[1]),
-                    learning_rate=str(ADAM["lr"]), weight_decay=str(ADAM["weight_decay"]),
-                    seed=str(seed), min_relu=f"{margin:.3g}")
+    metadata.update({"weight_" + name: str(weight) for name, weight in weights.items() if name != "policy"})
+    metadata.update(method=args.method, sf_loss=args.sf_loss, discount=str(DISCOUNT), learning_rate=str(ADAM["lr"]),
+                    weight_decay=str(ADAM["weight_decay"]), seed=str(seed), min_relu=f"{margin:.3g}")
     write_safetensors(args.output, {**tensors, **batch, **result}, metadata)
     print(f"seed {seed}, smallest |ReLU input| {margin:.3g}", file=sys.stderr)
 
@@ -340,17 +483,19 @@ def check(args):
     """Prints the worst relative error per kind of tensor; fails over 1e-4."""
     tensors, metadata = read_safetensors(args.file)
     widths = {key: int(metadata[key]) for key in FULL if key != "channels"}
-    net = SynPo(tuple(map(int, metadata["channels"].split(","))), **widths)
+    channels = tuple(map(int, metadata["channels"].split(",")))
+    net = METHODS[metadata["method"]](SimpleNamespace(**widths, channels=channels, sf_loss=metadata["sf_loss"]))
     with torch.no_grad():
         for name, p in net.named_parameters():
             p.copy_(from_file(name, tensors["param." + file_name(name)]))
-    batch = {name: tensors[name] for name in ("input", "env", "task", "label", "taken", "reward")}
-    weights = (float(metadata["weight_env"]), float(metadata["weight_task"]))
+    inputs = ("input", "env", "task", "label", "taken", "reward", "next", "planner_q")
+    batch = {name: tensors[name] for name in inputs if name in tensors}
+    weights = dict(policy=1, **{name: float(metadata["weight_" + name]) for name in ("reward", "env", "task")})
     result, margin = step_results(net, to_torch(batch, torch.float32), weights)
     worst = {}
     for name, got in result.items():
         want = tensors[name]
-        error = np.abs(got.astype(np.float64) - want).max() / np.abs(want).max()
+        error = np.nanmax(np.abs(got.astype(np.float64) - want)) / (np.nanmax(np.abs(want)) or 1)
         kind = name.split(".")[0]
         worst[kind] = max(worst.get(kind, (0, "")), (error, name))
     for error, name in worst.values():
@@ -396,10 +541,11 @@ def make_step(mode, net, batches, memory_format, head, foreach):
         return forward
     net.train()
     optimiser = torch.optim.Adam(net.parameters(), foreach=foreach, **ADAM)
+    weights = dict(policy=1, reward=REWARD_WEIGHT, env=0.1, task=0.1)
 
     def train():
         optimiser.zero_grad(set_to_none=True)
-        net.losses(next(batches), (0.1, 0.1), head)[0][0].backward()
+        total(net.losses(next(batches), head)[0], weights).backward()
         optimiser.step()
     return train
 
@@ -425,7 +571,7 @@ def bench(args):
     torch.set_num_threads(args.threads)
     torch.set_flush_denormal(True)
     rng = np.random.default_rng(0)
-    net = SynPo(**FULL)
+    net = SynPo(SimpleNamespace(**FULL))
     randomise(net, torch.Generator().manual_seed(0))
     batches = [to_torch(random_batch(args.batch, 20, 20, rng, pairs=144), torch.float32) for _ in range(2)]
 
@@ -448,11 +594,13 @@ def bench(args):
     print(f"{args.batch / statistics.median(times):.0f}")
 
 
-def main():
+def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
     p = commands.add_parser("dump")
     p.add_argument("-o", "--output", required=True)
+    p.add_argument("--method", choices=METHODS, default="synpo")
+    p.add_argument("--sf-loss", choices=("td", "q", "ce"), default="td")
     p.add_argument("--full", action="store_true", help="full widths and a batch of 4 instead of narrow ones and 6")
     p.add_argument("--batch", type=int)
     p.add_argument("--seed", type=int, default=1)
@@ -460,8 +608,11 @@ def main():
     p.add_argument("--weight-env", type=float, default=0.1)
     p.add_argument("--weight-task", type=float, default=0.1)
     p.add_argument("--channels", type=lambda text: tuple(map(int, text.split(","))))
-    for name in ("feature", "basis", "embedding", "hidden", "envs", "tasks"):
-        p.add_argument("--" + name, type=int)
+    for name in FULL:
+        if name != "channels":
+            p.add_argument("--" + name.replace("_", "-"), type=int)
+    p = commands.add_parser("committed")
+    p.add_argument("-o", "--output", required=True, help="folder")
     p = commands.add_parser("check")
     p.add_argument("file")
     p = commands.add_parser("bench")
@@ -469,8 +620,17 @@ def main():
     p.add_argument("--batch", type=int, required=True)
     p.add_argument("--threads", type=int, required=True)
     p.add_argument("--seconds", type=float, default=8)
-    args = parser.parse_args()
-    {"dump": dump, "check": check, "bench": bench}[args.command](args)
+    return parser.parse_args(arguments)
+
+
+def committed(args):
+    for name, options in COMMITTED.items():
+        dump(parse(["dump", "-o", f"{args.output}/torch_{name}.safetensors", *options.split()]))
+
+
+def main():
+    args = parse(sys.argv[1:])
+    {"dump": dump, "committed": committed, "check": check, "bench": bench}[args.command](args)
 
 
 if __name__ == "__main__":

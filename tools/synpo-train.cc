@@ -97,15 +97,16 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
 int body(int argc, char** argv) {
   Settings s;
   RecipeOptions hyper;
+  const std::string method_help = listed_methods() + " [synpo]";
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
       .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones", s.time)
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)", s.pairs)
-      .call('m', "method", "NAME", "synpo, mlp, mtl, modulenet or sf [synpo]",
+      .call('m', "method", "NAME", method_help.c_str(),
             [&](const std::string& name) {
               const auto& names = method_names();
-              if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected synpo, mlp, mtl, modulenet or sf");
+              if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected " + listed_methods());
               s.method = name;
             })
       .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)

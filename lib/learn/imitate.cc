@@ -191,8 +191,8 @@ RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
     for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
     model_.policy->prepare_inference(parallel_, best_parameters().data(), best_statistics().data(), pairs);
     PairResult sum;
-    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, {model_.seed, model_.window, kGridStepLimit, model_.policy->temperature()}))
-      sum.add(result);
+    const EvalOptions options = {model_.seed, model_.window, kGridStepLimit, model_.policy->temperature()};
+    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, options)) sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;
   }

@@ -40,8 +40,8 @@ class Imitation {
 
   // Means since the last call: losses, accuracies, learning rate. Times are the caller's.
   RunLogRow take_report();
-  // Success, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones at every call. NaN where there
-  // are no such pairs.
+  // Success, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones at
+  // every call. NaN where there are no such pairs.
   RunLogRow::Evaluation evaluate_sample(int episodes);
 
   Checkpoint checkpoint(bool with_training_state) const;

@@ -44,14 +44,24 @@ const std::vector<std::string>& method_names() {
   return names;
 }
 
-std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape) {
-  if (method == "synpo") return std::make_unique<SynPo<float>>(shape);
-  if (method == "mlp") return std::make_unique<Mlp<float>>(shape);
-  if (method == "mtl") return std::make_unique<Mtl<float>>(shape);
-  if (method == "modulenet") return std::make_unique<ModuleNet<float>>(shape);
-  if (method == "sf") return std::make_unique<Sf<float>>(shape);
-  fail(Exit::kData, "unknown method ", quoted(method), ", expected synpo, mlp, mtl, modulenet or sf");
+std::string listed_methods() {
+  const std::vector<std::string>& names = method_names();
+  std::string list = names.front();
+  for (size_t i = 1; i < names.size(); ++i) list += (i + 1 < names.size() ? ", " : " or ") + names[i];
+  return list;
 }
+
+template <class T>
+std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicyShape& shape) {
+  if (method == "synpo") return std::make_unique<SynPo<T>>(shape);
+  if (method == "mlp") return std::make_unique<Mlp<T>>(shape);
+  if (method == "mtl") return std::make_unique<Mtl<T>>(shape);
+  if (method == "modulenet") return std::make_unique<ModuleNet<T>>(shape);
+  if (method == "sf") return std::make_unique<Sf<T>>(shape);
+  fail(Exit::kData, "unknown method ", quoted(method), ", expected ", listed_methods());
+}
+template std::unique_ptr<Policy<float>> make_policy(const std::string&, const PolicyShape&);
+template std::unique_ptr<Policy<double>> make_policy(const std::string&, const PolicyShape&);
 
 std::map<std::string, int64_t> describe_shape(const PolicyShape& shape) {
   std::map<std::string, int64_t> sizes;

@@ -13,8 +13,11 @@
 namespace synpo {
 
 const std::vector<std::string>& method_names();
-// Throws kData for another name.
-std::unique_ptr<Policy<float>> make_policy(const std::string& method, const PolicyShape& shape);
+// "synpo, mlp, ... or sf"
+std::string listed_methods();
+// Throws kData for another name. There is one for float and one for double.
+template <class T = float>
+std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicyShape& shape);
 std::map<std::string, int64_t> describe_shape(const PolicyShape& shape);
 // Throws kData for sizes that are missing or out of bounds.
 PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes);

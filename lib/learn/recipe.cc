@@ -47,7 +47,7 @@ const Hyper kHypers[] = {
     {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
     {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
     {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
-    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
+    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1); sf: 1", "The losses"},
     {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
     {"task-loss", &O::task_loss, 0, 1e6, false, "weight of task disentanglement (lambda 3)"},
     {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},
@@ -62,7 +62,8 @@ const Hyper kHypers[] = {
      "Single methods", {}, true},
     {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true},
     {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true},
-    {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr, {"td", "q", "ce"}, true},
+    {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr,
+     {"td", "q", "ce"}, true},
     {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true},
 };
 

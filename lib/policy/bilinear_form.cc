@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "nn/gemm.h"
-
 namespace synpo {
 namespace {
 constexpr int kRows = 64;  // of a shard
@@ -106,6 +104,19 @@ void BilinearForm<T>::score_backward(const T* q, int action, T dscore, const T* 
     dq[c] = dscore * phi[c];
     dphi[c] += dscore * q[c];
   }
+}
+
+template <class T>
+void BilinearForm<T>::prepare_inference(const T* parameters) {
+  if (!direct()) phi_packed_.pack(Op::kTransposed, columns_, actions_, parameters + phi_, columns_);
+}
+
+template <class T>
+void BilinearForm<T>::infer(int rows, const T* q, T* scores) const {
+  if (direct())
+    std::copy_n(q, size_t(rows) * actions_, scores);
+  else
+    gemm(Op::kAsIs, rows, q, columns_, phi_packed_, scores, actions_);
 }
 
 template <class T>

@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "nn/buffer.h"
+#include "nn/gemm.h"
 #include "nn/init.h"
 #include "nn/layout.h"
 
@@ -42,6 +43,10 @@ class BilinearForm {
   T score(const T* q, int action, const T* parameters) const;
   void score_backward(const T* q, int action, T dscore, const T* parameters, T* dq, T* gradient) const;
 
+  // Takes phi over for infer(), which does what scores() does.
+  void prepare_inference(const T* parameters);
+  void infer(int rows, const T* q, T* scores) const;
+
   // For x(s, a): the matrices theta phi(a) [d, K] of some different actions. Gradients of them that have come together in
   // action_matrix_gradient() are taken further by finish_actions().
   void use_actions(Parallel& parallel, const std::vector<int>& actions, const T* parameters);
@@ -57,6 +62,7 @@ class BilinearForm {
   size_t theta_, phi_ = kNone;
   std::vector<int> used_;
   Buffer<T> phi_used_, matrices_, dmatrices_;  // of the used actions, in the general form
+  Packed<T> phi_packed_;                       // for inference
 };
 
 extern template class BilinearForm<float>;

@@ -1,20 +1,8 @@
 #include "policy/embedding_table.h"
 
-#include <cmath>
+#include "nn/length.h"
 
 namespace synpo {
-namespace {
-
-constexpr double kTiny = 1e-12;  // keeps a row of zeros from being divided by its length
-
-template <class T>
-double squared_length(const T* row, int width) {
-  double squares = kTiny;
-  for (int c = 0; c < width; ++c) squares += double(row[c]) * row[c];
-  return squares;
-}
-
-}  // namespace
 
 template <class T>
 EmbeddingTable<T>::EmbeddingTable(const std::string& name, int count, int width, bool normalise, Layout& parameters)
@@ -37,25 +25,24 @@ void EmbeddingTable<T>::use(const T* parameters) {
   if (!normalise_) return;
   for (int i = 0; i < count_; ++i) {
     T* row = used_.data() + size_t(i) * width_;
-    const T factor = T(std::sqrt(width_ / squared_length(row, width_)));
+    const T factor = T(length_factor(row, width_, width_));
     for (int c = 0; c < width_; ++c) row[c] *= factor;
   }
 }
 
 template <class T>
-void EmbeddingTable<T>::backward(const T* parameters, T* gradient) const {
+const T* EmbeddingTable<T>::add_gradient(int i, const T* from) {
+  T* to = gradient_row(i);
+  for (int c = 0; c < width_; ++c) to[c] += from[c];
+  return from + width_;
+}
+
+template <class T>
+void EmbeddingTable<T>::backward(const T* parameters, T* gradient) {
   for (int i = 0; i < count_; ++i) {
-    const size_t at = size_t(i) * width_;
-    const T *u = used_.data() + at, *du = dused_.data() + at;
-    T* de = gradient + at_ + at;
-    if (!normalise_) {
-      for (int c = 0; c < width_; ++c) de[c] += du[c];
-      continue;
-    }
-    double along = 0;
-    for (int c = 0; c < width_; ++c) along += double(du[c]) * u[c];
-    const double factor = std::sqrt(width_ / squared_length(parameters + at_ + at, width_));
-    for (int c = 0; c < width_; ++c) de[c] += T(factor * (du[c] - along / width_ * u[c]));
+    const size_t at = at_ + size_t(i) * width_;
+    if (normalise_) length_backward(row(i), width_, width_, length_factor(parameters + at, width_, width_), gradient_row(i));
+    for (int c = 0; c < width_; ++c) gradient[at + c] += gradient_row(i)[c];
   }
 }
 

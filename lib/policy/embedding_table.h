@@ -1,5 +1,6 @@
 // Learned embeddings e_env or e_task, one row each.
 #pragma once
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,11 @@ class EmbeddingTable {
   // Gradients of what is used, to be added to.
   T* gradient() { return dused_.data(); }
   T* gradient_row(int i) { return dused_.data() + size_t(i) * width_; }
-  // The parameters' gradient +=.
-  void backward(const T* parameters, T* gradient) const;
+  // Row i as a part of a longer row, and that part's gradient back again. Both return where the next part begins.
+  T* put(int i, T* to) const { return std::copy_n(row(i), width_, to); }
+  const T* add_gradient(int i, const T* from);
+  // The parameters' gradient +=. Once behind each use().
+  void backward(const T* parameters, T* gradient);
 
  private:
   int count_, width_;

@@ -1,8 +1,8 @@
 #include "policy/mlp.h"
 
 #include <algorithm>
-#include <cmath>
 
+#include "nn/length.h"
 #include "policy/head_losses.h"
 
 namespace synpo {
@@ -32,24 +32,20 @@ void Mlp<T>::initialise(const InitOptions& options, T* parameters, T* statistics
 }
 
 template <class T>
-T Mlp<T>::make_input(const T* psi, int env, int task, T* x) const {
-  const int d = shape_.feature, width = shape_.embedding;
-  double squares = 1e-12;
-  for (int c = 0; c < d; ++c) squares += double(psi[c]) * psi[c];
-  const T length = T(std::sqrt(squares));
-  for (int c = 0; c < d; ++c) x[c] = psi[c] / length;
-  std::copy_n(env_.row(env), width, x + d);
-  std::copy_n(task_.row(task), width, x + d + width);
-  return length;
+double Mlp<T>::make_input(const T* psi, int env, int task, T* x) const {
+  const double factor = length_factor(psi, shape_.feature, 1);
+  x = std::transform(psi, psi + shape_.feature, x, [&](T value) { return T(factor * value); });
+  task_.put(task, env_.put(env, x));
+  return factor;
 }
 
 template <class T>
 Losses Mlp<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
                     T* gradient, T* logits) {
-  const int n = batch.size, d = shape_.feature, width = shape_.embedding, actions = shape_.actions, in = inputs();
+  const int n = batch.size, d = shape_.feature, actions = shape_.actions, in = inputs();
   std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
   T* psi = psi_.grow(size_t(n) * d);
-  T* length = length_.grow(n);
+  factor_.resize(n);
   T* x = x_.grow(size_t(n) * in);
   T* dx = dx_.grow(size_t(n) * in);
   T* unit = unit_.grow(size_t(n) * d);
@@ -58,7 +54,7 @@ Losses Mlp<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWei
   env_.use(parameters);
   task_.use(parameters);
   for (int i = 0; i < n; ++i) {
-    length[i] = make_input(psi + size_t(i) * d, batch.env[i], batch.task[i], x + size_t(i) * in);
+    factor_[i] = make_input(psi + size_t(i) * d, batch.env[i], batch.task[i], x + size_t(i) * in);
     std::copy_n(x + size_t(i) * in, d, unit + size_t(i) * d);
   }
   std::copy_n(policy_.forward(parallel, n, x, parameters), size_t(n) * actions, logits);
@@ -73,24 +69,13 @@ Losses Mlp<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWei
   for (int i = 0; i < n; ++i) {
     const T* row = dx + size_t(i) * in;
     std::copy_n(row, d, dunit + size_t(i) * d);
-    T *denv = env_.gradient_row(batch.env[i]), *dtask = task_.gradient_row(batch.task[i]);
-    for (int c = 0; c < width; ++c) {
-      denv[c] += row[d + c];
-      dtask[c] += row[d + width + c];
-    }
+    task_.add_gradient(batch.task[i], env_.add_gradient(batch.env[i], row + d));
   }
   losses.env = f_env_.step(parallel, n, unit, batch.env, env_, weights.env, parameters, dunit, gradient);
   losses.task = f_task_.step(parallel, n, unit, batch.task, task_, weights.task, parameters, dunit, gradient);
   env_.backward(parameters, gradient);
   task_.backward(parameters, gradient);
-  // Through the division by its length, psi's gradient loses what points along psi.
-  for (int i = 0; i < n; ++i) {
-    const T* u = unit + size_t(i) * d;
-    T* du = dunit + size_t(i) * d;
-    double along = 0;
-    for (int c = 0; c < d; ++c) along += double(u[c]) * du[c];
-    for (int c = 0; c < d; ++c) du[c] = (du[c] - T(along) * u[c]) / length[i];
-  }
+  for (int i = 0; i < n; ++i) length_backward(unit + size_t(i) * d, d, 1, factor_[i], dunit + size_t(i) * d);
   encoder_.backward(parallel, parameters, dunit, gradient);
   losses.add_up(weights);
   return losses;

@@ -25,8 +25,8 @@ class Mlp : public Policy<T> {
 
  private:
   int inputs() const { return shape_.feature + 2 * shape_.embedding; }
-  // One row of x from a state's psi; returns |psi|.
-  T make_input(const T* psi, int env, int task, T* x) const;
+  // One row of x from a state's psi; returns 1 / |psi|.
+  double make_input(const T* psi, int env, int task, T* x) const;
 
   PolicyShape shape_;
   ResNet<T> encoder_;
@@ -35,7 +35,8 @@ class Mlp : public Policy<T> {
   Perceptron<T> policy_, reward_;
   Recogniser<T> f_env_, f_task_;
 
-  Buffer<T> psi_, length_, x_, dx_, unit_, dunit_, dlogits_, drewards_;
+  Buffer<T> psi_, x_, dx_, unit_, dunit_, dlogits_, drewards_;
+  std::vector<double> factor_;
   std::vector<std::pair<int, int>> pairs_;  // for inference
 };
 

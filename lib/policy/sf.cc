@@ -36,8 +36,7 @@ void Sf<T>::initialise(const InitOptions& options, T* parameters, T* statistics)
 template <class T>
 void Sf<T>::make_input(const T* feature, int env, int task, T* x) const {
   x = std::copy_n(feature, shape_.feature, x);
-  x = std::copy_n(env_.row(env), shape_.embedding, x);
-  std::copy_n(task_.row(task), shape_.embedding, x);
+  task_.put(task, env_.put(env, x));
 }
 
 template <class T>
@@ -50,7 +49,8 @@ template <class T>
 double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi, T* dpsi) const {
   const int n = batch.size, width = shape_.embedding;
   const size_t row = size_t(shape_.actions) * width;
-  const double counted = std::max<double>(1, double(std::count_if(batch.next, batch.next + n, [](int next) { return next != StepBatch<T>::kUnknown; })));
+  const auto unknown = std::count(batch.next, batch.next + n, int(StepBatch<T>::kUnknown));
+  const double counted = std::max(1.0, double(n - unknown));
   std::fill_n(dpsi, n * row, T(0));
   double sum = 0;
   for (int i = 0; i < n; ++i) {
@@ -137,8 +137,7 @@ Losses Sf<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeig
   for (int i = 0; i < n; ++i) {
     const T* from = dx + size_t(i) * in;
     for (int c = 0; c < d; ++c) dfeature[size_t(i) * d + c] += *from++;
-    for (T* to : {env_.gradient_row(batch.env[i]), task_.gradient_row(batch.task[i])})
-      for (int c = 0; c < width; ++c) to[c] += *from++;
+    task_.add_gradient(batch.task[i], env_.add_gradient(batch.env[i], from));
   }
   env_.backward(parameters, gradient);
   task_.backward(parameters, gradient);
@@ -163,7 +162,10 @@ void Sf<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair
   std::vector<T> feature(size_t(size) * d), x(size_t(size) * in), psi(size * row);
   Buffer<T> scratch;
   encoder_.infer(thread, size, pictures, feature.data());
-  for (int i = 0; i < size; ++i) make_input(feature.data() + size_t(i) * d, pairs_[pair[i]].first, pairs_[pair[i]].second, x.data() + size_t(i) * in);
+  for (int i = 0; i < size; ++i) {
+    const auto [env, task] = pairs_[pair[i]];
+    make_input(feature.data() + size_t(i) * d, env, task, x.data() + size_t(i) * in);
+  }
   psi_.infer(size, x.data(), psi.data(), scratch);
   for (int i = 0; i < size; ++i) values(psi.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape_.actions);
 }

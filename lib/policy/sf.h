@@ -29,7 +29,7 @@ class Sf : public Policy<T> {
  private:
   int inputs() const { return shape_.feature + 2 * shape_.embedding; }
   void make_input(const T* feature, int env, int task, T* x) const;
-  // values [actions] = features [actions, width] w; and backward, dfeatures = or +=, dw +=.
+  // values [actions] = features [actions, embedding] w.
   void values(const T* features, const T* w, T* values) const;
   // Mean square of a temporal difference; dpsi = its gradient. Targets are held fixed.
   double temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi, T* dpsi) const;

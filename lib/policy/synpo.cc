@@ -48,11 +48,11 @@ void SynPo<T>::use_embeddings(const T* parameters) {
 // alpha and beta of the pairs, and U and V.
 template <class T>
 void SynPo<T>::compose(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
-  const int count = int(pairs.size()), width = shape_.embedding;
+  const int count = int(pairs.size());
   T* input = pair_input_.grow(size_t(count) * coefficient_inputs());
   for (const auto& [env, task] : pairs) {
-    if (env_) input = std::copy_n(env_->row(env), width, input);
-    input = std::copy_n(task_.row(task), width, input);
+    if (env_) input = env_->put(env, input);
+    input = task_.put(task, input);
   }
   for (int h = 0; h < kHeads; ++h) {
     coefficients_[h] = coefficient_[h].forward(parallel, count, pair_input_.data(), parameters);
@@ -63,19 +63,17 @@ void SynPo<T>::compose(Parallel& parallel, const T* parameters, const std::vecto
 // From dcomposed_: gradients of theta, alpha, beta and the embeddings.
 template <class T>
 void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* gradient) {
-  const int count = int(pairs_.size()), width = shape_.embedding;
+  const int count = int(pairs_.size());
   T* dinput = dpair_input_.grow(size_t(count) * coefficient_inputs());
   T* dcoefficients = dcoefficients_.grow(size_t(count) * shape_.basis);
   for (int h = 0; h < kHeads; ++h) {
     form_.compose_backward(parallel, count, coefficients_[h], dcomposed_[h].data(), parameters, dcoefficients, gradient);
     coefficient_[h].backward(parallel, pair_input_.data(), dcoefficients, dinput, h > 0, parameters, gradient);
   }
-  const auto add = [&](T* to) {
-    for (int c = 0; c < width; ++c) to[c] += *dinput++;
-  };
+  const T* from = dinput;
   for (const auto& [env, task] : pairs_) {
-    if (env_) add(env_->gradient_row(env));
-    add(task_.gradient_row(task));
+    if (env_) from = env_->add_gradient(env, from);
+    from = task_.add_gradient(task, from);
   }
 }
 
@@ -218,18 +216,19 @@ void SynPo<T>::prepare_inference(Parallel& parallel, const T* parameters, const 
   encoder_.prepare_inference(parallel, parameters, statistics);
   use_embeddings(parameters);
   compose(parallel, parameters, pairs);
-  frozen_parameters_.assign(parameters, parameters + this->parameters_.total());
+  form_.prepare_inference(parameters);
+  policy_bias_.assign(parameters + bias_[kPolicy], parameters + bias_[kPolicy] + shape_.actions);
 }
 
 template <class T>
 void SynPo<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  const T* parameters = frozen_parameters_.data();
-  std::vector<T> psi(size_t(size) * shape_.feature), q(size_t(size) * form_.columns());
+  const int d = shape_.feature, columns = form_.columns();
+  std::vector<T> psi(size_t(size) * d), q(size_t(size) * columns);
   encoder_.infer(thread, size, pictures, psi.data());
   for (int i = 0; i < size; ++i)
-    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * shape_.feature, q.data() + size_t(i) * form_.columns());
-  form_.scores(size, q.data(), parameters, logits);
-  kernels<T>().add_bias(size, shape_.actions, parameters + bias_[kPolicy], false, logits);
+    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * d, q.data() + size_t(i) * columns);
+  form_.infer(size, q.data(), logits);
+  kernels<T>().add_bias(size, shape_.actions, policy_bias_.data(), false, logits);
 }
 
 template class SynPo<float>;

@@ -67,7 +67,7 @@ class SynPo : public Policy<T> {
   Buffer<T> psi_, dpsi_, q_[kHeads], dq_[kHeads], dlogits_, psi_sorted_, dpsi_sorted_, x_, dx_;
   std::vector<int> truth_;
   // For inference.
-  std::vector<T> frozen_parameters_;
+  std::vector<T> policy_bias_;
 };
 
 extern template class SynPo<float>;

@@ -1,6 +1,12 @@
 // Rates of the worlds, the formats and the network step, for scripts/bench.
 //   synpo-bench rows                     TSV rows name, value, unit of everything but the step
+//   synpo-bench methods                  the rows of these that compare methods, and those of the head
 //   synpo-bench train|forward B THREADS  states per second of the Table 2 network at batch B
+//
+// train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
+// head_FORM_ACTIONS_train and _infer are the bilinear head alone, d = K = 128, 512 states of 144 pairs. `direct` composes A d K a pair and
+// scores with A d a state; `general`, with phi(a) of D = 32, composes D d K and scores with D d + A D. Training is forward and backward, inference
+// what is left when the pairs are composed.
 #include <Eigen/Core>
 #include <algorithm>
 #include <chrono>
@@ -11,10 +17,11 @@
 
 #include "base/parallel.h"
 #include "base/random.h"
-#include "nn/adam.h"
 #include "learn/episode.h"
+#include "learn/model.h"
 #include "learn/recipe.h"
 #include "learn/steps.h"
+#include "nn/adam.h"
 #include "nn/gemm.h"
 #include "policy/synpo.h"
 #include "world/gridworld.h"
@@ -30,11 +37,13 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 struct RandomBatch {
   std::vector<uint8_t> pictures;
-  std::vector<int> env, task, label, taken;
-  std::vector<float> reward;
+  std::vector<int> env, task, label, taken, next;
+  std::vector<float> reward, planner_q;
   StepBatch<float> batch;
 
-  explicit RandomBatch(int n) : pictures(size_t(n) * kGridCells * kHistory), env(n), task(n), label(n), taken(n), reward(n) {
+  explicit RandomBatch(int n)
+      : pictures(size_t(n) * kGridCells * kHistory), env(n), task(n), label(n), taken(n), next(n, StepBatch<float>::kTerminal), reward(n),
+        planner_q(size_t(n) * kGridActions, 1.0f) {
     const std::vector<Maze>& mazes = builtin_mazes();
     for (int i = 0; i < n; ++i) {
       Random random(1, Purpose::kEpisodeStart, 0, i);
@@ -44,13 +53,14 @@ struct RandomBatch {
       label[i] = int(random.below(kGridActions));
       taken[i] = label[i];
       reward[i] = -0.01f;
+      if (i < n / 2) next[i] = n / 2 + i;
       uint8_t colours[kGridCells];
       const GridState state = grid_reset(mazes[env[i]], random);
       draw_view(mazes[env[i]], state.now, 1, colours);
       for (int cell = 0; cell < kGridCells; ++cell)
         for (int f = 0; f < kHistory; ++f) pictures[(size_t(i) * kGridCells + cell) * kHistory + f] = colours[cell];
     }
-    batch = {n, pictures.data(), env.data(), task.data(), label.data(), taken.data(), reward.data()};
+    batch = {n, pictures.data(), env.data(), task.data(), label.data(), taken.data(), reward.data(), 1, 0, next.data(), planner_q.data()};
   }
 };
 
@@ -71,9 +81,11 @@ double rate(int states, double limit_s, Work&& work) {
   return rates[rates.size() / 2];
 }
 
-double network_rate(bool train, int n, int threads, double limit_s = 4) {
+double network_rate(bool train, int n, int threads, double limit_s = 4, const std::string& method = "synpo") {
   Parallel parallel(threads);
-  SynPo<float> policy{PolicyShape()};
+  const ImitationOptions options = recipe(kDefaultRecipe, method);
+  const std::unique_ptr<Policy<float>> made = make_policy(method, options.shape(GridSet::open("gridworld")));
+  Policy<float>& policy = *made;
   const size_t count = policy.parameters().total();
   Buffer<float> parameters(count), statistics(policy.statistics().total()), gradient(count), m(count), v(count), logits(size_t(n) * kGridActions);
   policy.initialise({}, parameters.data(), statistics.data());
@@ -83,7 +95,7 @@ double network_rate(bool train, int n, int threads, double limit_s = 4) {
   int64_t step = 0;
   if (train)
     return rate(n, limit_s, [&] {
-      policy.step(parallel, data.batch, {0.01, 0.1, 0.1}, parameters.data(), statistics.data(), gradient.data(), logits.data());
+      policy.step(parallel, data.batch, options.losses(), parameters.data(), statistics.data(), gradient.data(), logits.data());
       adam_step(parallel, {}, ++step, count, gradient.data(), parameters.data(), m.data(), v.data());
     });
   std::vector<std::pair<int, int>> pairs;
@@ -190,6 +202,80 @@ double step_multiply_adds() {
   return 3.0 * (policy.encoder().multiply_adds() + recognisers + shape.feature * shape.basis) - first_block;
 }
 
+// What SynPo's head does with the states of some pairs, for any number of actions.
+class Head {
+ public:
+  Head(int actions, int action_embedding, int threads)
+      : parallel_(threads), form_(actions, kFeature, kBasis, action_embedding, layout_), parameters_(layout_.total()), gradient_(layout_.total()),
+        w_(kPairs * form_.matrix_size()), dw_(kPairs * form_.matrix_size()), q_(kStates * form_.columns()), dq_(kStates * form_.columns()),
+        scores_(size_t(kStates) * actions), psi_(kStates * kFeature, 0.5f), dpsi_(psi_.size()), coefficients_(kPairs * kBasis, 0.1f),
+        dcoefficients_(coefficients_.size()) {
+    InitStream stream(1, 1);
+    form_.initialise(stream, parameters_.data());
+    form_.prepare_inference(parameters_.data());
+    compose();
+  }
+  void compose() { form_.compose(parallel_, kPairs, coefficients_.data(), parameters_.data(), w_.data()); }
+  void apply() {
+    for_pairs([&](size_t p, size_t i) { form_.apply(w(p), psi_.data() + i * kFeature, q_.data() + i * form_.columns()); });
+  }
+  void infer() {
+    apply();
+    for_units([&](int rows, size_t i) { form_.infer(rows, q_.data() + i * form_.columns(), scores_.data() + i * form_.actions()); });
+  }
+  // The scores stand for their own gradient.
+  void train() {
+    compose();
+    apply();
+    for_units([&](int rows, size_t i) {
+      form_.scores(rows, q_.data() + i * form_.columns(), parameters_.data(), scores_.data() + i * form_.actions());
+    });
+    gradient_.zero();
+    dw_.zero();
+    for_units([&](int rows, size_t i) {
+      form_.scores_backward(rows, scores_.data() + i * form_.actions(), parameters_.data(), dq_.data() + i * form_.columns());
+    });
+    form_.phi_backward(kStates, q_.data(), scores_.data(), gradient_.data());
+    for_pairs([&](size_t p, size_t i) {
+      form_.apply_backward(w(p), psi_.data() + i * kFeature, dq_.data() + i * form_.columns(), dpsi_.data() + i * kFeature,
+                           dw_.data() + p * form_.matrix_size());
+    });
+    form_.compose_backward(parallel_, kPairs, coefficients_.data(), dw_.data(), parameters_.data(), dcoefficients_.data(), gradient_.data());
+  }
+  static constexpr int kFeature = 128, kBasis = 128, kStates = 512, kPairs = 144;
+
+ private:
+  const float* w(size_t pair) const { return w_.data() + pair * form_.matrix_size(); }
+  template <class Body>
+  void for_pairs(Body&& body) {
+    parallel_.run(kPairs, [&](int p, int) {
+      for (size_t i = size_t(p); i < kStates; i += kPairs) body(size_t(p), i);
+    });
+  }
+  template <class Body>
+  void for_units(Body&& body) {
+    constexpr int kUnit = Policy<float>::kInferenceUnit;
+    parallel_.run(kStates / kUnit, [&](int unit, int) { body(kUnit, size_t(unit) * kUnit); });
+  }
+  Parallel parallel_;
+  Layout layout_;
+  BilinearForm<float> form_;
+  Buffer<float> parameters_, gradient_, w_, dw_, q_, dq_, scores_;
+  std::vector<float> psi_, dpsi_, coefficients_, dcoefficients_;
+};
+
+void method_rows(int threads) {
+  for (const std::string& method : method_names())
+    row(("train_" + method + "_states_per_s_b512").c_str(), network_rate(true, 512, threads, 2, method), "states/s");
+  for (const int actions : {5, 100, 1000})
+    for (const int action_embedding : {0, 32}) {
+      Head head(actions, action_embedding, threads);
+      const std::string name = std::string("head_") + (action_embedding ? "general_" : "direct_") + std::to_string(actions);
+      row((name + "_train").c_str(), rate(Head::kStates, 1, [&] { head.train(); }), "states/s");
+      row((name + "_infer").c_str(), rate(Head::kStates, 1, [&] { head.infer(); }), "states/s");
+    }
+}
+
 int rows() {
   const int threads = Parallel().threads();
   row("world_steps_per_s", world_rate(), "steps/s");
@@ -207,6 +293,7 @@ int rows() {
   row("step_of_product", step * step_multiply_adds() / product, "ratio");
   row("draw_states_per_s", drawn, "states/s");
   row("draw_of_step", step / drawn, "ratio");
+  method_rows(threads);
   return 0;
 }
 
@@ -219,6 +306,10 @@ int main(int argc, char** argv) {
     return 0;
   }
   if (argc == 2 && what == "rows") return rows();
-  std::fputs("usage: synpo-bench rows | train BATCH THREADS | forward BATCH THREADS\n", stderr);
+  if (argc == 2 && what == "methods") {
+    method_rows(Parallel().threads());
+    return 0;
+  }
+  std::fputs("usage: synpo-bench rows | methods | train BATCH THREADS | forward BATCH THREADS\n", stderr);
   return 64;
 }

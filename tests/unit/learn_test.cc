@@ -324,6 +324,8 @@ TEST(Model, ComesBack) {
   again.options = checkpoint.options;
   add_tensors(again.file, "", model.policy->parameters(), model.parameters.data());
   add_tensors(again.file, "", model.policy->statistics(), model.statistics.data());
+  // Sizes that came later are the only difference.
+  for (const char* name : {"action_embedding", "head_hidden", "seam", "sf_loss"}) EXPECT_EQ(again.shape.erase(name), 1u) << name;
   EXPECT_TRUE(format_checkpoint(again) == contents("tests/data/v1/checkpoint.safetensors")) << "bytes differ";
 }
 
@@ -345,7 +347,8 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs.clear(); }), "65 the checkpoint has no environment");
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs.pop_back(); }), "65 the network's shape does not fit the world");
   EXPECT_EQ(refused([](Checkpoint& c) { c.tasks.pop_back(); }), "65 the checkpoint's tasks are not this build's");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.method = "mlp"; }), "65 unknown method 'mlp', this build has synpo");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.method = "dqn"; }), "65 unknown method 'dqn', expected synpo, mlp, mtl, modulenet or sf");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.method = "mlp"; }), "65 no tensor 'policy.hidden.weight'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }), "65 pairs: unknown env 'map9' (other maps?)");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape.erase("basis"); }), "65 the shape has no 'basis'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 0; }), "65 shape 'hidden': found 0, expected a whole number from 1 to 65536");
@@ -417,9 +420,48 @@ TEST(Recipe, ComesBackThroughTheCheckpoint) {
   EXPECT_EQ(refused("memory", "0"), "65 option 'memory': found '0', expected a whole number from 1 to 1e+07");
   EXPECT_EQ(refused("memory", "2.5"), "65 option 'memory': found '2.5', expected a whole number from 1 to 1e+07");
   EXPECT_EQ(refused("lr", "nan"), "65 option 'lr': found 'nan', expected a number from 0 to 1");
+  EXPECT_EQ(refused("sf-loss", "mse"), "65 option 'sf-loss': found 'mse', expected td, q or ce");
   std::map<std::string, std::string> missing = values;
   missing.erase("lr");
   EXPECT_EQ(thrown([&] { parse_options(missing); }), "65 the checkpoint has no option 'lr'");
+}
+
+TEST(Recipe, CheckpointsFromBeforeAnOptionHaveItsDefault) {
+  std::map<std::string, std::string> values = describe_options(recipe("fast"));
+  for (const char* name : {"action-embedding", "head-hidden", "seam", "dropout", "sf-loss", "discount"}) ASSERT_EQ(values.erase(name), 1u) << name;
+  EXPECT_EQ(describe_options(parse_options(values)), describe_options(recipe("fast")));
+  values["seam"] = "0";
+  EXPECT_EQ(thrown([&] { parse_options(values); }), "65 option 'seam': found '0', expected a whole number from 1 to 4096");
+}
+
+TEST(Shape, CheckpointsFromBeforeASizeHaveItsDefault) {
+  PolicyShape shape;
+  shape.seam = 7;
+  shape.sf_loss = SfLoss::kCrossEntropy;
+  std::map<std::string, int64_t> sizes = describe_shape(shape);
+  EXPECT_EQ(describe_shape(parse_shape(sizes)), sizes);
+  for (const char* name : {"action_embedding", "head_hidden", "seam", "sf_loss"}) ASSERT_EQ(sizes.erase(name), 1u) << name;
+  EXPECT_EQ(describe_shape(parse_shape(sizes)), describe_shape(PolicyShape()));
+  sizes["seam"] = 0;
+  EXPECT_EQ(thrown([&] { parse_shape(sizes); }), "65 shape 'seam': found 0, expected a whole number from 1 to 65536");
+  sizes.erase("seam");
+  sizes["sf_loss"] = 3;
+  EXPECT_EQ(thrown([&] { parse_shape(sizes); }), "65 shape 'sf_loss': found 3, expected a whole number from 0 to 2");
+  sizes = describe_shape(shape);
+  sizes.erase("basis");
+  EXPECT_EQ(thrown([&] { parse_shape(sizes); }), "65 the shape has no 'basis'");
+}
+
+TEST(Recipe, SomeValuesAreTheMethods) {
+  for (const char* name : {"fast", "paper"}) {
+    const ImitationOptions synpo = recipe(name);
+    EXPECT_EQ(recipe(name, "mlp").feature, 256);
+    EXPECT_EQ(recipe(name, "modulenet").head_hidden, 128);
+    EXPECT_EQ(recipe(name, "sf").head_hidden, 512);
+    EXPECT_EQ(recipe(name, "sf").reward_loss, 1);
+    EXPECT_EQ(describe_options(recipe(name, "mtl")), describe_options(synpo));
+    EXPECT_EQ(synpo.reward_loss, 0.01);
+  }
 }
 
 ImitationOptions from_command_line(std::vector<std::string> arguments) {
@@ -443,6 +485,11 @@ TEST(Recipe, FromTheCommandLine) {
     want.task_loss = 0.5;
     EXPECT_EQ(describe_options(from_command_line(arguments)), describe_options(want));
   }
+  ImitationOptions want = recipe("fast");
+  want.env_loss = want.task_loss = want.reward_loss = 0;
+  want.sf_loss = 2;
+  EXPECT_EQ(describe_options(from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "ce"})), describe_options(want));
+  EXPECT_EQ(thrown([] { from_command_line({"--sf-loss", "0"}); }), "64 option --sf-loss: found '0', expected td, q or ce; try 'tool --help'");
   EXPECT_EQ(thrown([] { from_command_line({"--recipe", "paper", "--roll-in", "0.5"}); }), "64 --roll-in needs --batch-states");
   EXPECT_EQ(thrown([] { from_command_line({"--recipe", "slow"}); }), "64 option --recipe: found 'slow', expected fast or paper; try 'tool --help'");
   EXPECT_EQ(thrown([] { from_command_line({"--balance", "0"}); }),

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -40,6 +41,13 @@ struct Walk {
   }
 };
 
+bool has_planner_q(const Minibatch& batch, int i, const Walk& walk) {
+  const std::array<int, kGridActions> cents = builtin_world().planner(walk.trajectory->pair.env).q_cents(walk.task(), walk.state);
+  for (int a = 0; a < kGridActions; ++a)
+    if (batch.planner_q[i * kGridActions + a] != float(cents[a]) / 100) return false;
+  return true;
+}
+
 // Whether sample `i` of the batch is the walk's next step, taken with `taken`.
 bool is_step(const Minibatch& batch, int i, const Walk& walk, int window, int taken) {
   if (batch.env[i] != walk.trajectory->pair.env || batch.task[i] != walk.trajectory->pair.task || batch.label[i] != walk.label() ||
@@ -47,8 +55,18 @@ bool is_step(const Minibatch& batch, int i, const Walk& walk, int window, int ta
     return false;
   GridState after = walk.state;
   if (batch.reward[i] != float(grid_step(walk.maze(), walk.task(), after, taken).reward_cents) / 100) return false;
+  if (batch.needs.planner_q && !has_planner_q(batch, i, walk)) return false;
   const std::vector<uint8_t> pictures = pictures_of(walk.maze(), walk.frames, window);
   return std::equal(pictures.begin(), pictures.end(), batch.pictures.begin() + i * kPicture);
+}
+
+// Whether what stands behind sample `i`, the walk's next step, is where the taken action leads. `behind` is where the batch has it.
+bool leads_on(const Minibatch& batch, int i, int behind, const Walk& walk, int window) {
+  Walk after = walk;
+  GridState state = walk.state;
+  if (grid_step(walk.maze(), walk.task(), state, batch.taken[i]).terminated) return batch.next[i] == StepBatch<float>::kTerminal;
+  after.step(batch.taken[i]);
+  return batch.next[i] == behind && is_step(batch, behind, after, window, after.move());
 }
 
 ReplayMemory memory_of(int count, double noise, const std::vector<EnvTask>& pairs = {{0, 0}, {7, 3}, {12, 19}}) {
@@ -105,6 +123,49 @@ TEST(TrajectoryDraw, TakesAllStepsOfTheDrawnTrajectories) {
   for (const int count : drawn) EXPECT_NEAR(count, expected, 5 * std::sqrt(expected));
 }
 
+TEST(TrajectoryDraw, KnowsTheStepBehindAndThePlannersValues) {
+  ReplayMemory memory = memory_of(7, 0.3);
+  GridEpisode broken_off = expert({4, 4}, 0);
+  ASSERT_GT(broken_off.actions.size(), 6u);
+  broken_off.actions.resize(5);
+  broken_off.labels.resize(5);
+  memory.add(broken_off);
+  Parallel parallel(2);
+  Minibatch batch;
+  batch.needs = {true, true};
+  std::set<int> ends;
+  for (int update = 0; update < 20; ++update) {
+    TrajectoryDraw::draw(builtin_world(), memory, parallel, 5, 1, 1, update, batch);
+    for (int at = 0; at < batch.size();) {
+      size_t which = 0;
+      while (!is_step(batch, at, Walk(memory[which]), 1, memory[which].actions[0])) ASSERT_LT(++which, memory.size());
+      Walk walk(memory[which]);
+      for (const uint8_t action : memory[which].actions) {
+        ASSERT_TRUE(is_step(batch, at, walk, 1, action));
+        if (size_t(walk.state.steps) + 1 < memory[which].actions.size())
+          ASSERT_TRUE(leads_on(batch, at, at + 1, walk, 1));
+        else
+          ends.insert(batch.next[at]);
+        walk.step(action);
+        ++at;
+      }
+      EXPECT_EQ(batch.next[at - 1], memory[which].actions.size() == 5 ? StepBatch<float>::kUnknown : StepBatch<float>::kTerminal);
+    }
+  }
+  EXPECT_EQ(ends.size(), 2u);
+}
+
+TEST(TrajectoryDraw, DrawsTheSameWhateverIsNeededBesides) {
+  const ReplayMemory memory = memory_of(7, 0.3);
+  Parallel parallel(1);
+  Minibatch plain, more;
+  more.needs = {true, true};
+  TrajectoryDraw::draw(builtin_world(), memory, parallel, 3, 1, 1, 7, plain);
+  TrajectoryDraw::draw(builtin_world(), memory, parallel, 3, 1, 1, 7, more);
+  EXPECT_TRUE(equal(plain, more));
+  EXPECT_TRUE(plain.next.empty() && plain.planner_q.empty());
+}
+
 TEST(TrajectoryDraw, IsTheSameForTheSameUpdate) {
   const ReplayMemory memory = memory_of(20, 0);
   Parallel one(1), two(2);
@@ -139,6 +200,7 @@ class Followers {
     for (Walk& walk : walks_[number]) {
       const int taken = options_.noise > 0 ? batch.taken[i] : walk.move();
       if (!is_step(batch, i, walk, window_, taken)) continue;
+      if (batch.needs.next && !leads_on(batch, i, batch.size() / 2 + i, walk, window_)) continue;
       const bool was_recorded = walk.recorded();
       on_ += was_recorded;
       off_ += !was_recorded;
@@ -258,6 +320,56 @@ TEST(RunningDraw, NoiseAndTheLearnersMovesAreAsOftenAsAsked) {
   // Half of the moves are picks; a random move may run into a wall.
   EXPECT_GT(double(stayed) / steps, 0.45);
   EXPECT_LT(double(stayed) / steps, 0.68);
+}
+
+TEST(RunningDraw, KnowsTheStepBehindAndThePlannersValues) {
+  const ReplayMemory memory = memory_of(9, 0.3);
+  const RunningOptions options = {6, 1, 0.3, 0.2, false, kGridStepLimit};
+  RunningDraw running(builtin_world(), options, 1);
+  Followers followers(memory, options, 1);
+  Parallel parallel(2);
+  Minibatch batch;
+  batch.needs = {true, true};
+  int last = 0;
+  for (int update = 0; update < 300; ++update) {
+    running.draw(memory, parallel, 12, 1, update, batch);
+    ASSERT_EQ(batch.size(), 12);
+    std::vector<int> greedy;
+    for (int i = 0; i < 6; ++i) {
+      // The learner does what was done anyhow, so that the way is known.
+      greedy.push_back(batch.taken[i]);
+      followers.check(batch, i, i, batch.taken[i]);
+      if (HasFatalFailure()) return;
+      EXPECT_EQ(batch.next[6 + i], StepBatch<float>::kUnknown);
+      last += batch.next[i] == StepBatch<float>::kTerminal;
+    }
+    running.advance(memory, greedy, update);
+  }
+  EXPECT_GT(followers.on(), 200);
+  EXPECT_GT(followers.off(), 200);
+  EXPECT_GT(last, 10);
+}
+
+TEST(RunningDraw, DrawsTheSameWhateverIsNeededBesides) {
+  const ReplayMemory memory = memory_of(9, 0.3);
+  const BatchNeeds needs[] = {{}, {false, true}, {true, false}, {true, true}};
+  std::vector<RunningDraw> running(4, RunningDraw(builtin_world(), {10, 0.3, 0.3, 0.2, true, 60}, 1));
+  Parallel parallel(2);
+  for (int update = 0; update < 60; ++update) {
+    Minibatch batches[4];
+    std::vector<int> greedy;
+    for (int i = 0; i < 7; ++i) greedy.push_back((update + i) % kGridActions);
+    for (int n = 0; n < 4; ++n) {
+      batches[n].needs = needs[n];
+      // Steps behind others take the other half of the batch; an odd one is rounded up.
+      running[n].draw(memory, parallel, needs[n].next ? 13 : 7, 1, update, batches[n]);
+      EXPECT_EQ(batches[n].size(), needs[n].next ? 14 : 7);
+      batches[n].needs = {};
+      batches[n].resize(7);
+      EXPECT_TRUE(equal(batches[n], batches[0])) << update << " " << n;
+      running[n].advance(memory, greedy, update);
+    }
+  }
 }
 
 TEST(RunningDraw, ATrajectoryMayBreakOff) {
