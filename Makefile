@@ -9,7 +9,7 @@ ALL_CXXFLAGS := -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict 
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
-TOOLS    := synpo-gen-expert synpo-train synpo-eval synpo-matrix synpo-render
+TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
 LIB_SRC  := $(wildcard lib/*/*.cc)
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
 TARGETS  := plain $(if $(filter x86_64,$(shell $(CXX) -dumpmachine | cut -d- -f1)),avx2 avx512 amx)
@@ -37,7 +37,7 @@ ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
 bench check-torch: | deps-bench
 endif
 
-.PHONY: all lib check bench demo deps deps-bench install clean check-torch
+.PHONY: all lib check bench demo gallery deps deps-bench install clean check-torch
 all: $(TOOLS:%=$(B)/%)
 lib: $(B)/libsynpo.a
 
@@ -87,6 +87,9 @@ check-torch: $(B)/unit-tests
 
 bench: all $(B)/synpo-bench
 	scripts/bench
+
+gallery: all
+	scripts/gallery $(CHECKPOINT)
 
 demo: all
 	scripts/demo

@@ -21,19 +21,31 @@ struct RunLogRow {
   std::optional<Evaluation> evaluation;
 };
 
-class RunLog {
+// A table that grows a row at a time.
+class TsvLog {
  public:
   // Writes the header; a log that is there already is written anew, or continued where `append`. An empty path writes nowhere.
-  RunLog(const std::string& path, bool append);
-  ~RunLog();
-  RunLog(const RunLog&) = delete;
-  RunLog& operator=(const RunLog&) = delete;
-  void write(const RunLogRow& row);
+  TsvLog(const std::string& path, bool append, const std::vector<std::string>& columns);
+  ~TsvLog();
+  TsvLog(const TsvLog&) = delete;
+  TsvLog& operator=(const TsvLog&) = delete;
+  // A value for each column; NaN is NA.
+  void write(const std::vector<double>& values);
 
  private:
   int fd_ = -1;
   std::string path_;
   void put(const std::string& text);
+};
+
+// The log of imitation learning.
+class RunLog {
+ public:
+  RunLog(const std::string& path, bool append);
+  void write(const RunLogRow& row);
+
+ private:
+  TsvLog log_;
 };
 
 // What a log's rows are put against. Minutes are of training up to the row: those of resumed runs are added up, and updates that

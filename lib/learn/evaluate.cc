@@ -139,4 +139,29 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
   return sum;
 }
 
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const GridSet& world, const Model& model, const float* parameters, const float* statistics,
+                                      int episodes) {
+  std::vector<EnvTask> groups[2];  // unseen, seen
+  for (int env = 0; env < world.envs(); ++env)
+    for (int task = 0; task < world.task_count(); ++task) groups[model.is_seen({env, task})].push_back({env, task});
+  double success[2], reward[2];
+  for (int seen = 0; seen < 2; ++seen) {
+    success[seen] = reward[seen] = std::nan("");
+    if (groups[seen].empty()) continue;
+    std::vector<std::pair<int, int>> pairs;
+    for (const EnvTask& pair : groups[seen]) pairs.emplace_back(pair.env, pair.task);
+    std::vector<EvalEpisode> jobs;
+    Random random(model.seed, Purpose::kEvaluationPairs, uint64_t(seen));
+    for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
+    model.policy->prepare_inference(parallel, parameters, statistics, pairs);
+    PairResult sum;
+    for (const PairResult& result :
+         evaluate(parallel, *model.policy, world, groups[seen], jobs, {model.seed, model.window, kGridStepLimit, model.policy->temperature()}))
+      sum.add(result);
+    success[seen] = double(sum.successes) / sum.episodes;
+    reward[seen] = sum.reward_cents / 100.0 / sum.episodes;
+  }
+  return {success[1], reward[1], success[0], reward[0]};
+}
+
 }  // namespace synpo

@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "format/trajectory.h"
-#include "learn/episode.h"
-#include "policy/policy.h"
+#include "format/run_log.h"
+#include "learn/model.h"
 
 namespace synpo {
 
@@ -36,5 +36,10 @@ using EpisodeSink = std::function<void(const Trajectory&)>;
 std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const GridSet& world, const std::vector<EnvTask>& pairs,
                                  const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink = nullptr,
                                  const std::function<void(size_t done)>& progress = nullptr);
+
+// Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones
+// at every call. NaN where there are no such pairs. The weights are given apart: a run may evaluate others than those it learns with.
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const GridSet& world, const Model& model, const float* parameters, const float* statistics,
+                                      int episodes);
 
 }  // namespace synpo

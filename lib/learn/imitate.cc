@@ -177,26 +177,7 @@ RunLogRow Imitation::take_report() {
 }
 
 RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
-  std::vector<EnvTask> groups[2];  // unseen, seen
-  for (int env = 0; env < world_.envs(); ++env)
-    for (int task = 0; task < world_.task_count(); ++task) groups[model_.is_seen({env, task})].push_back({env, task});
-  double success[2], reward[2];
-  for (int seen = 0; seen < 2; ++seen) {
-    success[seen] = reward[seen] = std::nan("");
-    if (groups[seen].empty()) continue;
-    std::vector<std::pair<int, int>> pairs;
-    for (const EnvTask& pair : groups[seen]) pairs.emplace_back(pair.env, pair.task);
-    std::vector<EvalEpisode> jobs;
-    Random random(model_.seed, Purpose::kEvaluationPairs, uint64_t(seen));
-    for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
-    model_.policy->prepare_inference(parallel_, best_parameters().data(), best_statistics().data(), pairs);
-    PairResult sum;
-    const EvalOptions options = {model_.seed, model_.window, kGridStepLimit, model_.policy->temperature()};
-    for (const PairResult& result : evaluate(parallel_, *model_.policy, world_, groups[seen], jobs, options)) sum.add(result);
-    success[seen] = double(sum.successes) / sum.episodes;
-    reward[seen] = sum.reward_cents / 100.0 / sum.episodes;
-  }
-  return {success[1], reward[1], success[0], reward[0]};
+  return synpo::evaluate_sample(parallel_, world_, model_, best_parameters().data(), best_statistics().data(), episodes);
 }
 
 Checkpoint Imitation::checkpoint(bool with_training_state) const {

@@ -27,7 +27,18 @@ void BatchNorm<T>::add_rows(int shard, const T* z, size_t rows, const T* running
 }
 
 template <class T>
+void BatchNorm<T>::freeze(const T* gamma, const T* beta, const T* running_mean, const T* running_variance) {
+  frozen_ = true;
+  frozen_norm(channels_, gamma, beta, running_mean, running_variance, scale_.data(), shift_.data());
+  for (int c = 0; c < channels_; ++c) {
+    mean_[c] = running_mean[c];
+    inverse_sd_[c] = T(1 / std::sqrt(double(running_variance[c]) + kNormEpsilon));
+  }
+}
+
+template <class T>
 void BatchNorm<T>::finish(size_t rows, const T* gamma, const T* beta, T* running_mean, T* running_variance) {
+  frozen_ = false;
   const std::vector<double> sum = sums_.total(0), squares = sums_.total(1);
   for (int c = 0; c < channels_; ++c) {
     const double offset = sum[c] / rows;
@@ -62,7 +73,7 @@ void BatchNorm<T>::finish_backward(size_t rows, const T* gamma, T* dgamma, T* db
   constant_.resize(channels_);
   for (int c = 0; c < channels_; ++c) {
     const double inverse = inverse_sd_[c], scale = gamma[c] * inverse;
-    const double mean_d = sum[c] / rows, slope = products[c] / rows * inverse * inverse;
+    const double mean_d = frozen_ ? 0 : sum[c] / rows, slope = frozen_ ? 0 : products[c] / rows * inverse * inverse;
     dbeta[c] = T(sum[c]);
     dgamma[c] = T(products[c] * inverse);
     from_d_[c] = T(scale);

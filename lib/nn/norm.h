@@ -34,6 +34,9 @@ class BatchNorm {
   // ... then the batch's statistics are made, and the running ones moved (unbiased variance, as PyTorch does it).
   void finish(size_t rows, const T* gamma, const T* beta, T* running_mean, T* running_variance);
 
+  // Instead of begin() to finish(): the running statistics are taken as they are, and no gradient goes through them.
+  void freeze(const T* gamma, const T* beta, const T* running_mean, const T* running_variance);
+
   // y = z * scale() + shift() normalises, with gamma and beta.
   const T* scale() const { return scale_.data(); }
   const T* shift() const { return shift_.data(); }
@@ -50,6 +53,7 @@ class BatchNorm {
 
  private:
   int channels_;
+  bool frozen_ = false;
   std::vector<T> scale_, shift_, mean_, inverse_sd_;
   std::vector<T> from_d_, from_z_, constant_;  // dz = d * from_d + z * from_z + constant
   ChannelSums sums_;

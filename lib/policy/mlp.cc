@@ -9,8 +9,7 @@ namespace synpo {
 
 template <class T>
 Mlp<T>::Mlp(const PolicyShape& shape)
-    : shape_(shape), encoder_(shape.channels, shape.feature, shape.normalise_input, this->parameters_, this->statistics_),
-      behind_encoder_(this->parameters_.total()),
+    : EncodedPolicy<T>(shape),
       env_("embedding.env", shape.envs, shape.embedding, shape.normalise_embeddings, this->parameters_),
       task_("embedding.task", shape.tasks, shape.embedding, shape.normalise_embeddings, this->parameters_),
       policy_("policy", inputs(), shape.head_hidden, shape.actions, this->parameters_),
@@ -19,12 +18,9 @@ Mlp<T>::Mlp(const PolicyShape& shape)
       f_task_("f_task", shape.feature, shape.hidden, task_, this->parameters_) {}
 
 template <class T>
-void Mlp<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
-  std::fill_n(parameters, this->parameters_.total(), T(0));
-  encoder_.initialise(options.seed, parameters, statistics);
-  InitStream stream(options.seed, 1);
-  env_.initialise(stream, options.embedding_sd, parameters);
-  task_.initialise(stream, options.embedding_sd, parameters);
+void Mlp<T>::initialise_head(InitStream& stream, double embedding_sd, T* parameters) const {
+  env_.initialise(stream, embedding_sd, parameters);
+  task_.initialise(stream, embedding_sd, parameters);
   policy_.initialise(stream, parameters);
   reward_.initialise(stream, parameters);
   f_env_.initialise(stream, parameters);
@@ -33,24 +29,21 @@ void Mlp<T>::initialise(const InitOptions& options, T* parameters, T* statistics
 
 template <class T>
 double Mlp<T>::make_input(const T* psi, int env, int task, T* x) const {
-  const double factor = length_factor(psi, shape_.feature, 1);
-  x = std::transform(psi, psi + shape_.feature, x, [&](T value) { return T(factor * value); });
+  const double factor = length_factor(psi, shape().feature, 1);
+  x = std::transform(psi, psi + shape().feature, x, [&](T value) { return T(factor * value); });
   task_.put(task, env_.put(env, x));
   return factor;
 }
 
 template <class T>
-Losses Mlp<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
-                    T* gradient, T* logits) {
-  const int n = batch.size, d = shape_.feature, actions = shape_.actions, in = inputs();
-  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
-  T* psi = psi_.grow(size_t(n) * d);
+Losses Mlp<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
+                         T* logits, T* dpsi, T* gradient) {
+  const int n = batch.size, d = shape().feature, actions = shape().actions, in = inputs();
   factor_.resize(n);
   T* x = x_.grow(size_t(n) * in);
   T* dx = dx_.grow(size_t(n) * in);
   T* unit = unit_.grow(size_t(n) * d);
   T* dunit = dunit_.grow(size_t(n) * d);
-  encoder_.forward(parallel, n, batch.pictures, parameters, statistics, psi);
   env_.use(parameters);
   task_.use(parameters);
   for (int i = 0; i < n; ++i) {
@@ -62,7 +55,7 @@ Losses Mlp<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWei
   T* dlogits = dlogits_.grow(size_t(n) * actions);
   T* drewards = drewards_.grow(size_t(n) * actions);
   Losses losses;
-  losses.policy = policy_loss(parallel, n, actions, logits, batch.label, dlogits);
+  losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
   losses.reward = reward_loss(n, actions, rewards, batch.taken, batch.reward, weights.reward, drewards);
   policy_.backward(parallel, x, dlogits, dx, false, parameters, gradient);
   reward_.backward(parallel, x, drewards, dx, true, parameters, gradient);
@@ -75,15 +68,16 @@ Losses Mlp<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWei
   losses.task = f_task_.step(parallel, n, unit, batch.task, task_, weights.task, parameters, dunit, gradient);
   env_.backward(parameters, gradient);
   task_.backward(parameters, gradient);
-  for (int i = 0; i < n; ++i) length_backward(unit + size_t(i) * d, d, 1, factor_[i], dunit + size_t(i) * d);
-  encoder_.backward(parallel, parameters, dunit, gradient);
-  losses.add_up(weights);
+  for (int i = 0; i < n; ++i) {
+    T* row = dunit + size_t(i) * d;
+    length_backward(unit + size_t(i) * d, d, 1, factor_[i], row);
+    for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += row[c];
+  }
   return losses;
 }
 
 template <class T>
-void Mlp<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics, const std::vector<std::pair<int, int>>& pairs) {
-  encoder_.prepare_inference(parallel, parameters, statistics);
+void Mlp<T>::prepare_head(Parallel&, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
   env_.use(parameters);
   task_.use(parameters);
   policy_.prepare_inference(parameters);
@@ -91,13 +85,12 @@ void Mlp<T>::prepare_inference(Parallel& parallel, const T* parameters, const T*
 }
 
 template <class T>
-void Mlp<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  const int d = shape_.feature, in = inputs();
-  std::vector<T> psi(size_t(size) * d), x(size_t(size) * in);
-  encoder_.infer(thread, size, pictures, psi.data());
+void Mlp<T>::infer_head(int size, const T* psi, const int* pair, T* logits) const {
+  const int d = shape().feature, in = inputs();
+  std::vector<T> x(size_t(size) * in);
   for (int i = 0; i < size; ++i) {
     const auto [env, task] = pairs_[pair[i]];
-    make_input(psi.data() + size_t(i) * d, env, task, x.data() + size_t(i) * in);
+    make_input(psi + size_t(i) * d, env, task, x.data() + size_t(i) * in);
   }
   Buffer<T> scratch;
   policy_.infer(size, x.data(), logits, scratch);

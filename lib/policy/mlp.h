@@ -5,37 +5,34 @@
 #pragma once
 #include "nn/perceptron.h"
 #include "policy/embedding_table.h"
-#include "policy/policy.h"
+#include "policy/encoded_policy.h"
 #include "policy/recogniser.h"
-#include "policy/resnet.h"
 
 namespace synpo {
 
 template <class T>
-class Mlp : public Policy<T> {
+class Mlp : public EncodedPolicy<T> {
  public:
   explicit Mlp(const PolicyShape& shape);
 
-  void initialise(const InitOptions& options, T* parameters, T* statistics) const override;
-  Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics, T* gradient,
-              T* logits) override;
-  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
-                         const std::vector<std::pair<int, int>>& pairs) override;
-  void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) override;
+ protected:
+  void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
+                   T* dpsi, T* gradient) override;
+  void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
+  void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
  private:
-  int inputs() const { return shape_.feature + 2 * shape_.embedding; }
+  using EncodedPolicy<T>::shape;
+  int inputs() const { return shape().feature + 2 * shape().embedding; }
   // One row of x from a state's psi; returns 1 / |psi|.
   double make_input(const T* psi, int env, int task, T* x) const;
 
-  PolicyShape shape_;
-  ResNet<T> encoder_;
-  size_t behind_encoder_;  // where the other parameters begin
   EmbeddingTable<T> env_, task_;
   Perceptron<T> policy_, reward_;
   Recogniser<T> f_env_, f_task_;
 
-  Buffer<T> psi_, x_, dx_, unit_, dunit_, dlogits_, drewards_;
+  Buffer<T> x_, dx_, unit_, dunit_, dlogits_, drewards_;
   std::vector<double> factor_;
   std::vector<std::pair<int, int>> pairs_;  // for inference
 };

@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "base/random.h"
-#include "policy/head_losses.h"
 
 namespace synpo {
 
 template <class T>
 ModuleNet<T>::ModuleNet(const PolicyShape& shape)
-    : shape_(shape), encoder_(shape.channels, shape.feature, shape.normalise_input, this->parameters_, this->statistics_),
-      behind_encoder_(this->parameters_.total()) {
+    : EncodedPolicy<T>(shape) {
   for (int task = 0; task < shape.tasks; ++task)
     task_.each.emplace_back("module.task" + std::to_string(task), shape.feature, shape.head_hidden, shape.seam, this->parameters_);
   for (int env = 0; env < shape.envs; ++env)
@@ -19,10 +17,7 @@ ModuleNet<T>::ModuleNet(const PolicyShape& shape)
 }
 
 template <class T>
-void ModuleNet<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
-  std::fill_n(parameters, this->parameters_.total(), T(0));
-  encoder_.initialise(options.seed, parameters, statistics);
-  InitStream stream(options.seed, 1);
+void ModuleNet<T>::initialise_head(InitStream& stream, double, T* parameters) const {
   for (const Modules* modules : {&task_, &env_})
     for (const Perceptron<T>& module : modules->each) module.initialise(stream, parameters);
 }
@@ -48,25 +43,21 @@ void ModuleNet<T>::Modules::backward(Parallel& parallel, const T* dto, T* dfrom,
     const size_t begin = groups.begin[g];
     each[groups.keys[g]].backward(parallel, x.data() + begin * in, dys + begin * out, dxs + begin * in, false, parameters, gradient);
   }
-  for (size_t j = 0; j < groups.members.size(); ++j) std::copy_n(dxs + j * in, in, dfrom + size_t(groups.members[j]) * in);
+  for (size_t j = 0; j < groups.members.size(); ++j) std::transform(dxs + j * in, dxs + (j + 1) * in, dfrom + size_t(groups.members[j]) * in, dfrom + size_t(groups.members[j]) * in, std::plus<T>());
 }
 
 template <class T>
-Losses ModuleNet<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
-                          T* gradient, T* logits) {
+Losses ModuleNet<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
+                               T* logits, T* dpsi, T* gradient) {
   const int n = batch.size;
-  const size_t seams = size_t(n) * shape_.seam;
-  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
-  T* psi = psi_.grow(size_t(n) * shape_.feature);
-  T* dpsi = dpsi_.grow(size_t(n) * shape_.feature);
+  const size_t seams = size_t(n) * shape().seam;
   T* seam = seam_.grow(seams);
   T* dseam = dseam_.grow(seams);
   T* keep = keep_.grow(seams);
-  T* dlogits = dlogits_.grow(size_t(n) * shape_.actions);
-  task_.groups.sort(n, shape_.tasks, [&](int i) { return batch.task[i]; });
-  env_.groups.sort(n, shape_.envs, [&](int i) { return batch.env[i]; });
+  T* dlogits = dlogits_.grow(size_t(n) * shape().actions);
+  task_.groups.sort(n, shape().tasks, [&](int i) { return batch.task[i]; });
+  env_.groups.sort(n, shape().envs, [&](int i) { return batch.env[i]; });
 
-  encoder_.forward(parallel, n, batch.pictures, parameters, statistics, psi);
   task_.forward(parallel, psi, parameters, seam);
   Random random(batch.seed, Purpose::kDropout, 0, batch.update);
   for (size_t i = 0; i < seams; ++i) {
@@ -76,33 +67,29 @@ Losses ModuleNet<T>::step(Parallel& parallel, const StepBatch<T>& batch, const L
   env_.forward(parallel, seam, parameters, logits);
   Losses losses;
   losses.reward = losses.env = losses.task = std::nan("");
-  losses.policy = policy_loss(parallel, n, shape_.actions, logits, batch.label, dlogits);
+  losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
+  std::fill_n(dseam, seams, T(0));
   env_.backward(parallel, dlogits, dseam, parameters, gradient);
   for (size_t i = 0; i < seams; ++i) dseam[i] *= keep[i];
   task_.backward(parallel, dseam, dpsi, parameters, gradient);
-  encoder_.backward(parallel, parameters, dpsi, gradient);
-  losses.add_up(weights);
   return losses;
 }
 
 template <class T>
-void ModuleNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
-                                     const std::vector<std::pair<int, int>>& pairs) {
-  encoder_.prepare_inference(parallel, parameters, statistics);
+void ModuleNet<T>::prepare_head(Parallel&, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
   for (Modules* modules : {&task_, &env_})
     for (Perceptron<T>& module : modules->each) module.prepare_inference(parameters);
   pairs_ = pairs;
 }
 
 template <class T>
-void ModuleNet<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  std::vector<T> psi(size_t(size) * shape_.feature), seam(shape_.seam);
+void ModuleNet<T>::infer_head(int size, const T* psi, const int* pair, T* logits) const {
+  std::vector<T> seam(shape().seam);
   Buffer<T> scratch;
-  encoder_.infer(thread, size, pictures, psi.data());
   for (int i = 0; i < size; ++i) {
     const auto [env, task] = pairs_[pair[i]];
-    task_.each[task].infer(1, psi.data() + size_t(i) * shape_.feature, seam.data(), scratch);
-    env_.each[env].infer(1, seam.data(), logits + size_t(i) * shape_.actions, scratch);
+    task_.each[task].infer(1, psi + size_t(i) * shape().feature, seam.data(), scratch);
+    env_.each[env].infer(1, seam.data(), logits + size_t(i) * shape().actions, scratch);
   }
 }
 

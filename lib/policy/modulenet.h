@@ -4,25 +4,25 @@
 // It has the imitation loss alone. Samples of a batch are grouped by module.
 #pragma once
 #include "nn/perceptron.h"
+#include "policy/encoded_policy.h"
 #include "policy/groups.h"
-#include "policy/policy.h"
-#include "policy/resnet.h"
 
 namespace synpo {
 
 template <class T>
-class ModuleNet : public Policy<T> {
+class ModuleNet : public EncodedPolicy<T> {
  public:
   explicit ModuleNet(const PolicyShape& shape);
 
-  void initialise(const InitOptions& options, T* parameters, T* statistics) const override;
-  Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics, T* gradient,
-              T* logits) override;
-  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
-                         const std::vector<std::pair<int, int>>& pairs) override;
-  void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) override;
+ protected:
+  void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
+                   T* dpsi, T* gradient) override;
+  void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
+  void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
  private:
+  using EncodedPolicy<T>::shape;
   // One module for each key, over the samples of that key.
   struct Modules {
     std::vector<Perceptron<T>> each;
@@ -32,11 +32,8 @@ class ModuleNet : public Policy<T> {
     void backward(Parallel& parallel, const T* dto, T* dfrom, const T* parameters, T* gradient);
   };
 
-  PolicyShape shape_;
-  ResNet<T> encoder_;
-  size_t behind_encoder_;  // where the other parameters begin
   Modules task_, env_;
-  Buffer<T> psi_, dpsi_, seam_, dseam_, keep_, dlogits_;
+  Buffer<T> seam_, dseam_, keep_, dlogits_;
   std::vector<std::pair<int, int>> pairs_;  // for inference
 };
 

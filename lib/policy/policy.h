@@ -53,6 +53,15 @@ struct Losses {
   }
 };
 
+// A loss of the scores other than imitation's, for a batch of n states: psi [n, feature], logits and dlogits [n, actions]. Sets dlogits, may add to
+// dpsi, and returns the loss.
+template <class T>
+class Objective {
+ public:
+  virtual ~Objective() = default;
+  virtual double apply(Parallel& parallel, int n, const T* psi, const T* logits, T* dlogits, T* dpsi) = 0;
+};
+
 // Steps to learn from. Pictures are colour indices [size, 16, 16, history], oldest first; the others are [size].
 template <class T>
 struct StepBatch {
@@ -69,6 +78,9 @@ struct StepBatch {
   static constexpr int kUnknown = -2;   // it is not in the batch
   const int* next = nullptr;
   const T* planner_q = nullptr;  // [size, actions], undiscounted return of each action under the planner
+  Objective<T>* objective = nullptr;  // instead of imitation's loss
+  bool frozen_statistics = false;     // normalisation by the running statistics, which then stay
+  const T* psi = nullptr;             // [size, feature], instead of pictures; the encoder then is left alone, and its gradient as it was
 };
 
 // What a method wants of a batch beyond the steps themselves.
@@ -103,7 +115,8 @@ class Policy {
   // Scores [size, actions] of states, state i of pair number pair[i], with frozen statistics. One thread's part: `thread` picks
   // its scratch memory. At most kInferenceUnit states.
   static constexpr int kInferenceUnit = 64;
-  virtual void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) = 0;
+  // psi [size, feature] is given where asked for.
+  virtual void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits, T* psi = nullptr) = 0;
 
  protected:
   Layout parameters_, statistics_;

@@ -101,6 +101,14 @@ void ResNet<T>::prepare_convs(Parallel& parallel, const T* parameters, bool trai
 }
 
 template <class T>
+void ResNet<T>::freeze_input(const T* statistics) {
+  for (int c = 0; c < kViewChannels; ++c) {
+    input_shift_[c] = statistics[input_mean_ + c];
+    input_scale_[c] = T(1 / std::sqrt(statistics[input_variance_ + c] + kNormEpsilon));
+  }
+}
+
+template <class T>
 void ResNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics) {
   prepare_convs(parallel, parameters, false);
   for (Block& block : blocks_)
@@ -111,11 +119,7 @@ void ResNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const
       frozen_norm(count, parameters + place.scale, parameters + place.shift, statistics + place.mean, statistics + place.variance,
                   block.frozen[i].data(), block.frozen[i].data() + count);
     }
-  if (normalise_input_)
-    for (int c = 0; c < kViewChannels; ++c) {
-      input_shift_[c] = statistics[input_mean_ + c];
-      input_scale_[c] = T(1 / std::sqrt(statistics[input_variance_ + c] + kNormEpsilon));
-    }
+  if (normalise_input_) freeze_input(statistics);
   fc_packed_.pack(Op::kAsIs, int(flat_), feature_, parameters + fc_weight_, feature_);
   fc_bias_values_.assign(parameters + fc_bias_, parameters + fc_bias_ + feature_);
 }

@@ -23,8 +23,10 @@ class ResNet {
   // Convolutions as PyTorch does by default, the dense layer Xavier uniform, norms 1 and 0.
   void initialise(uint64_t seed, T* parameters, T* statistics) const;
 
-  // psi [n, feature] from pictures [n, 16, 16, history] of colour indices. Keeps what backward() needs; memory grows with n.
-  void forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi);
+  // psi [n, feature] from pictures [n, 16, 16, history] of colour indices. Keeps what backward() needs; memory grows with n. Where
+  // `frozen`, normalisation takes the running statistics, which stay.
+  void forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi,
+               bool frozen = false);
   // Writes the gradients of the encoder's parameters; dpsi is the gradient of the last forward()'s psi.
   void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient);
 
@@ -50,6 +52,7 @@ class ResNet {
     bool has_shortcut() const { return convs.size() == 3; }
   };
   void expand(int n, const uint8_t* pictures, const T* mean, const T* inverse_sd, T* x) const;
+  void freeze_input(const T* statistics);
   void normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics);
   void prepare_convs(Parallel& parallel, const T* parameters, bool training);
   void finish_block(Block& block, Range samples);

@@ -55,10 +55,12 @@ void ResNet<T>::finish_block(Block& block, Range samples) {
 }
 
 template <class T>
-void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi) {
+void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi,
+                        bool frozen) {
   n_ = n;
   prepare_convs(parallel, parameters, true);
-  if (normalise_input_) normalise_input(parallel, n, pictures, statistics);
+  if (normalise_input_ && frozen) freeze_input(statistics);
+  if (normalise_input_ && !frozen) normalise_input(parallel, n, pictures, statistics);
   input_.grow(n * kInputSize);
   for (size_t b = 0; b < blocks_.size(); ++b) {
     Block& block = blocks_[b];
@@ -71,10 +73,12 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
       const Conv<T>& conv = block.convs[i];
       T* z = block.z[i].data() + range.begin * conv.y_size();
       conv.forward(range.size(), from, z, scratch_[thread].products);
-      block.norms[i].add_rows(shard, z, size_t(range.size()) * pixels, statistics + block.places[i].mean);
+      if (!frozen) block.norms[i].add_rows(shard, z, size_t(range.size()) * pixels, statistics + block.places[i].mean);
     };
     const auto finish_norm = [&](int i) {
       const NormPlace& place = block.places[i];
+      if (frozen)
+        return block.norms[i].freeze(parameters + place.scale, parameters + place.shift, statistics + place.mean, statistics + place.variance);
       block.norms[i].finish(size_t(n) * pixels, parameters + place.scale, parameters + place.shift, statistics + place.mean,
                             statistics + place.variance);
     };

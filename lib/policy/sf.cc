@@ -4,14 +4,12 @@
 #include <cmath>
 
 #include "kernel/kernels.h"
-#include "policy/head_losses.h"
 
 namespace synpo {
 
 template <class T>
 Sf<T>::Sf(const PolicyShape& shape)
-    : shape_(shape), encoder_(shape.channels, shape.feature, shape.normalise_input, this->parameters_, this->statistics_),
-      behind_encoder_(this->parameters_.total()),
+    : EncodedPolicy<T>(shape),
       env_("embedding.env", shape.envs, shape.embedding, shape.normalise_embeddings, this->parameters_),
       task_("embedding.task", shape.tasks, shape.embedding, shape.normalise_embeddings, this->parameters_),
       phi_("phi", shape.feature, shape.head_hidden, shape.actions * shape.embedding, this->parameters_),
@@ -19,36 +17,33 @@ Sf<T>::Sf(const PolicyShape& shape)
 
 template <class T>
 BatchNeeds Sf<T>::needs() const {
-  return {shape_.sf_loss == SfLoss::kTemporalDifference, shape_.sf_loss == SfLoss::kPlannerQ};
+  return {shape().sf_loss == SfLoss::kTemporalDifference, shape().sf_loss == SfLoss::kPlannerQ};
 }
 
 template <class T>
-void Sf<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
-  std::fill_n(parameters, this->parameters_.total(), T(0));
-  encoder_.initialise(options.seed, parameters, statistics);
-  InitStream stream(options.seed, 1);
-  env_.initialise(stream, options.embedding_sd, parameters);
-  task_.initialise(stream, options.embedding_sd, parameters);
+void Sf<T>::initialise_head(InitStream& stream, double embedding_sd, T* parameters) const {
+  env_.initialise(stream, embedding_sd, parameters);
+  task_.initialise(stream, embedding_sd, parameters);
   phi_.initialise(stream, parameters);
   psi_.initialise(stream, parameters);
 }
 
 template <class T>
 void Sf<T>::make_input(const T* feature, int env, int task, T* x) const {
-  x = std::copy_n(feature, shape_.feature, x);
+  x = std::copy_n(feature, shape().feature, x);
   task_.put(task, env_.put(env, x));
 }
 
 template <class T>
 void Sf<T>::values(const T* features, const T* w, T* values) const {
-  const int width = shape_.embedding;
-  for (int a = 0; a < shape_.actions; ++a) values[a] = kernels<T>().dot(width, features + size_t(a) * width, w);
+  const int width = shape().embedding;
+  for (int a = 0; a < shape().actions; ++a) values[a] = kernels<T>().dot(width, features + size_t(a) * width, w);
 }
 
 template <class T>
 double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi, T* dpsi) const {
-  const int n = batch.size, width = shape_.embedding;
-  const size_t row = size_t(shape_.actions) * width;
+  const int n = batch.size, width = shape().embedding;
+  const size_t row = size_t(shape().actions) * width;
   const auto unknown = std::count(batch.next, batch.next + n, int(StepBatch<T>::kUnknown));
   const double counted = std::max(1.0, double(n - unknown));
   std::fill_n(dpsi, n * row, T(0));
@@ -70,7 +65,7 @@ double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, co
 
 template <class T>
 double Sf<T>::planner_distance(const StepBatch<T>& batch, const T* q, T* dq) const {
-  const size_t count = size_t(batch.size) * shape_.actions;
+  const size_t count = size_t(batch.size) * shape().actions;
   double sum = 0;
   for (size_t i = 0; i < count; ++i) {
     const T error = q[i] - batch.planner_q[i];
@@ -81,19 +76,15 @@ double Sf<T>::planner_distance(const StepBatch<T>& batch, const T* q, T* dq) con
 }
 
 template <class T>
-Losses Sf<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics, T* gradient,
-                   T* logits) {
-  const int n = batch.size, d = shape_.feature, width = shape_.embedding, actions = shape_.actions, in = inputs();
+Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* feature,
+                        T* logits, T* dfeature, T* gradient) {
+  const int n = batch.size, d = shape().feature, width = shape().embedding, actions = shape().actions, in = inputs();
   const size_t row = size_t(actions) * width;
-  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
-  T* feature = feature_.grow(size_t(n) * d);
-  T* dfeature = dfeature_.grow(size_t(n) * d);
   T* x = x_.grow(size_t(n) * in);
   T* dx = dx_.grow(size_t(n) * in);
   T* dphi = dphi_.grow(n * row);
   T* dpsi = dpsi_.grow(n * row);
   T* dq = dq_.grow(size_t(n) * actions);
-  encoder_.forward(parallel, n, batch.pictures, parameters, statistics, feature);
   env_.use(parameters);
   task_.use(parameters);
   for (int i = 0; i < n; ++i) make_input(feature + size_t(i) * d, batch.env[i], batch.task[i], x + size_t(i) * in);
@@ -103,11 +94,11 @@ Losses Sf<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeig
 
   Losses losses;
   losses.env = losses.task = std::nan("");
-  if (shape_.sf_loss == SfLoss::kTemporalDifference) {
+  if (shape().sf_loss == SfLoss::kTemporalDifference && !batch.objective) {
     losses.policy = temporal_difference(batch, weights.discount, phi, psi, dpsi);
   } else {
-    losses.policy = shape_.sf_loss == SfLoss::kPlannerQ ? planner_distance(batch, logits, dq)
-                                                        : policy_loss(parallel, n, actions, logits, batch.label, dq);
+    losses.policy = shape().sf_loss == SfLoss::kPlannerQ && !batch.objective ? planner_distance(batch, logits, dq)
+                                                        : this->score_loss(parallel, batch, feature, logits, dq, dfeature);
     for (int i = 0; i < n; ++i) {
       const T* w = task_.row(batch.task[i]);
       T* dw = task_.gradient_row(batch.task[i]);
@@ -132,7 +123,7 @@ Losses Sf<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeig
       dw[c] += derror * phi[at + c];
     }
   }
-  phi_.backward(parallel, feature, dphi, dfeature, false, parameters, gradient);
+  phi_.backward(parallel, feature, dphi, dfeature, true, parameters, gradient);
   psi_.backward(parallel, x, dpsi, dx, false, parameters, gradient);
   for (int i = 0; i < n; ++i) {
     const T* from = dx + size_t(i) * in;
@@ -141,14 +132,11 @@ Losses Sf<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeig
   }
   env_.backward(parameters, gradient);
   task_.backward(parameters, gradient);
-  encoder_.backward(parallel, parameters, dfeature, gradient);
-  losses.add_up(weights);
   return losses;
 }
 
 template <class T>
-void Sf<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics, const std::vector<std::pair<int, int>>& pairs) {
-  encoder_.prepare_inference(parallel, parameters, statistics);
+void Sf<T>::prepare_head(Parallel&, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
   env_.use(parameters);
   task_.use(parameters);
   psi_.prepare_inference(parameters);
@@ -156,18 +144,17 @@ void Sf<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* 
 }
 
 template <class T>
-void Sf<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  const int d = shape_.feature, in = inputs();
-  const size_t row = size_t(shape_.actions) * shape_.embedding;
-  std::vector<T> feature(size_t(size) * d), x(size_t(size) * in), psi(size * row);
+void Sf<T>::infer_head(int size, const T* feature, const int* pair, T* logits) const {
+  const int d = shape().feature, in = inputs();
+  const size_t row = size_t(shape().actions) * shape().embedding;
+  std::vector<T> x(size_t(size) * in), psi(size * row);
   Buffer<T> scratch;
-  encoder_.infer(thread, size, pictures, feature.data());
   for (int i = 0; i < size; ++i) {
     const auto [env, task] = pairs_[pair[i]];
-    make_input(feature.data() + size_t(i) * d, env, task, x.data() + size_t(i) * in);
+    make_input(feature + size_t(i) * d, env, task, x.data() + size_t(i) * in);
   }
   psi_.infer(size, x.data(), psi.data(), scratch);
-  for (int i = 0; i < size; ++i) values(psi.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape_.actions);
+  for (int i = 0; i < size; ++i) values(psi.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape().actions);
 }
 
 template class Sf<float>;

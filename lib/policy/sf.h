@@ -6,28 +6,27 @@
 #pragma once
 #include "nn/perceptron.h"
 #include "policy/embedding_table.h"
-#include "policy/policy.h"
-#include "policy/resnet.h"
+#include "policy/encoded_policy.h"
 
 namespace synpo {
 
 template <class T>
-class Sf : public Policy<T> {
+class Sf : public EncodedPolicy<T> {
  public:
   explicit Sf(const PolicyShape& shape);
 
   BatchNeeds needs() const override;
-  double temperature() const override { return shape_.sf_loss == SfLoss::kCrossEntropy ? kTemperature : 0; }
-  void initialise(const InitOptions& options, T* parameters, T* statistics) const override;
-  // Losses::policy is the loss that psi is learned from.
-  Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics, T* gradient,
-              T* logits) override;
-  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
-                         const std::vector<std::pair<int, int>>& pairs) override;
-  void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) override;
+  double temperature() const override { return shape().sf_loss == SfLoss::kCrossEntropy ? kTemperature : 0; }
+ protected:
+  void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
+                   T* dpsi, T* gradient) override;
+  void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
+  void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
  private:
-  int inputs() const { return shape_.feature + 2 * shape_.embedding; }
+  using EncodedPolicy<T>::shape;
+  int inputs() const { return shape().feature + 2 * shape().embedding; }
   void make_input(const T* feature, int env, int task, T* x) const;
   // values [actions] = features [actions, embedding] w.
   void values(const T* features, const T* w, T* values) const;
@@ -36,12 +35,9 @@ class Sf : public Policy<T> {
   // Mean square of Q's distance from the planner's; dq = its gradient.
   double planner_distance(const StepBatch<T>& batch, const T* q, T* dq) const;
 
-  PolicyShape shape_;
-  ResNet<T> encoder_;
-  size_t behind_encoder_;  // where the other parameters begin
   EmbeddingTable<T> env_, task_;
   Perceptron<T> phi_, psi_;
-  Buffer<T> feature_, dfeature_, x_, dx_, dphi_, dpsi_, dq_;
+  Buffer<T> x_, dx_, dphi_, dpsi_, dq_;
   std::vector<std::pair<int, int>> pairs_;  // for inference
 };
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "nn/gemm.h"
-#include "policy/head_losses.h"
 
 namespace synpo {
 namespace {
@@ -13,8 +12,7 @@ constexpr int kRows = 64;  // samples of a shard
 
 template <class T>
 SynPo<T>::SynPo(const PolicyShape& shape, Context context)
-    : shape_(shape), encoder_(shape.channels, shape.feature, shape.normalise_input, this->parameters_, this->statistics_),
-      behind_encoder_(this->parameters_.total()),
+    : EncodedPolicy<T>(shape),
       env_(context == Context::kTask
                ? std::optional<EmbeddingTable<T>>()
                : EmbeddingTable<T>("embedding.env", shape.envs, shape.embedding, shape.normalise_embeddings, this->parameters_)),
@@ -27,12 +25,9 @@ SynPo<T>::SynPo(const PolicyShape& shape, Context context)
       f_task_("f_task", shape.basis, shape.hidden, task_, this->parameters_) {}
 
 template <class T>
-void SynPo<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
-  std::fill_n(parameters, this->parameters_.total(), T(0));
-  encoder_.initialise(options.seed, parameters, statistics);
-  InitStream stream(options.seed, 1);
-  if (env_) env_->initialise(stream, options.embedding_sd, parameters);
-  task_.initialise(stream, options.embedding_sd, parameters);
+void SynPo<T>::initialise_head(InitStream& stream, double embedding_sd, T* parameters) const {
+  if (env_) env_->initialise(stream, embedding_sd, parameters);
+  task_.initialise(stream, embedding_sd, parameters);
   for (const Perceptron<T>& coefficient : coefficient_) coefficient.initialise(stream, parameters);
   if (f_env_) f_env_->initialise(stream, parameters);
   f_task_.initialise(stream, parameters);
@@ -65,7 +60,7 @@ template <class T>
 void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* gradient) {
   const int count = int(pairs_.size());
   T* dinput = dpair_input_.grow(size_t(count) * coefficient_inputs());
-  T* dcoefficients = dcoefficients_.grow(size_t(count) * shape_.basis);
+  T* dcoefficients = dcoefficients_.grow(size_t(count) * shape().basis);
   for (int h = 0; h < kHeads; ++h) {
     form_.compose_backward(parallel, count, coefficients_[h], dcomposed_[h].data(), parameters, dcoefficients, gradient);
     coefficient_[h].backward(parallel, pair_input_.data(), dcoefficients, dinput, h > 0, parameters, gradient);
@@ -79,9 +74,9 @@ void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* grad
 
 // Policy and reward losses: logits, dpsi_ and dcomposed_.
 template <class T>
-Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* gradient,
-                       T* logits) {
-  const int n = batch.size, d = shape_.feature, actions = shape_.actions, columns = form_.columns(), pairs = int(pairs_.size());
+Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
+                       T* dpsi, T* gradient) {
+  const int n = batch.size, d = shape().feature, actions = shape().actions, columns = form_.columns(), pairs = int(pairs_.size());
   const size_t matrix = form_.matrix_size();
   for (int h = 0; h < kHeads; ++h) {
     q_[h].grow(size_t(n) * columns);
@@ -94,7 +89,7 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
     });
   };
   for_samples([&](int p, size_t i) {
-    for (int h = 0; h < kHeads; ++h) form_.apply(composed_[h].data() + p * matrix, psi_.data() + i * d, q_[h].data() + i * columns);
+    for (int h = 0; h < kHeads; ++h) form_.apply(composed_[h].data() + p * matrix, psi + i * d, q_[h].data() + i * columns);
   });
 
   const auto for_rows = [&](auto&& body) {
@@ -109,7 +104,7 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
   });
   T* dlogits = dlogits_.grow(size_t(n) * actions);
   Losses losses;
-  losses.policy = policy_loss(parallel, n, actions, logits, batch.label, dlogits);
+  losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
   for_rows([&](int rows, size_t q_at, size_t at) { form_.scores_backward(rows, dlogits + at, parameters, dq_[kPolicy].data() + q_at); });
   form_.phi_backward(n, q_[kPolicy].data(), dlogits, gradient);
   for (int i = 0; i < n; ++i) {
@@ -126,10 +121,9 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
   parallel.run(pairs, [&](int p, int) {
     for (Buffer<T>& dcomposed : dcomposed_) std::fill_n(dcomposed.data() + p * matrix, matrix, T(0));
   });
-  std::fill_n(dpsi_.data(), size_t(n) * d, T(0));
   for_samples([&](int p, size_t i) {
     for (int h = 0; h < kHeads; ++h)
-      form_.apply_backward(composed_[h].data() + p * matrix, psi_.data() + i * d, dq_[h].data() + i * columns, dpsi_.data() + i * d,
+      form_.apply_backward(composed_[h].data() + p * matrix, psi + i * d, dq_[h].data() + i * columns, dpsi + i * d,
                            dcomposed_[h].data() + p * matrix);
   });
   return losses;
@@ -137,15 +131,15 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
 
 // The disentanglement losses. Samples are taken in the order of their labels, so that x is one product an action.
 template <class T>
-void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* gradient,
-                           Losses& losses) {
-  const int n = batch.size, d = shape_.feature, basis = shape_.basis;
+void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
+                           T* dpsi, T* gradient, Losses& losses) {
+  const int n = batch.size, d = shape().feature, basis = shape().basis;
   const std::vector<int>& order = by_label_.members;
   T* sorted = psi_sorted_.grow(size_t(n) * d);
   T* dsorted = dpsi_sorted_.grow(size_t(n) * d);
   T* x = x_.grow(size_t(n) * basis);
   T* dx = dx_.grow(size_t(n) * basis);
-  for (int j = 0; j < n; ++j) std::copy_n(psi_.data() + size_t(order[j]) * d, d, sorted + size_t(j) * d);
+  for (int j = 0; j < n; ++j) std::copy_n(psi + size_t(order[j]) * d, d, sorted + size_t(j) * d);
   std::fill_n(dx, size_t(n) * basis, T(0));
   form_.use_actions(parallel, by_label_.keys, parameters);
   // Shards within one label each.
@@ -174,7 +168,7 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
     gemm(Op::kAsIs, Op::kTransposed, rows.size(), d, basis, dx + size_t(rows.begin) * basis, basis, form_.action_matrix(group, parameters),
          basis, dsorted + size_t(rows.begin) * d, d);
     for (int j = rows.begin; j < rows.end; ++j)
-      for (int c = 0; c < d; ++c) dpsi_[size_t(order[j]) * d + c] += dsorted[size_t(j) * d + c];
+      for (int c = 0; c < d; ++c) dpsi[size_t(order[j]) * d + c] += dsorted[size_t(j) * d + c];
   });
   parallel.run(by_label_.count(), [&](int g, int) {
     const size_t begin = by_label_.begin[g];
@@ -185,50 +179,40 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
 }
 
 template <class T>
-Losses SynPo<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
-                      T* gradient, T* logits) {
-  // The encoder overwrites its own part.
-  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
-  psi_.grow(size_t(batch.size) * shape_.feature);
-  dpsi_.grow(size_t(batch.size) * shape_.feature);
-  const int tasks = shape_.tasks;
-  by_pair_.sort(batch.size, (env_ ? shape_.envs : 1) * tasks, [&](int i) { return (env_ ? batch.env[i] * tasks : 0) + batch.task[i]; });
-  by_label_.sort(batch.size, shape_.actions, [&](int i) { return batch.label[i]; });
+Losses SynPo<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
+                           T* logits, T* dpsi, T* gradient) {
+  const int tasks = shape().tasks;
+  by_pair_.sort(batch.size, (env_ ? shape().envs : 1) * tasks, [&](int i) { return (env_ ? batch.env[i] * tasks : 0) + batch.task[i]; });
+  by_label_.sort(batch.size, shape().actions, [&](int i) { return batch.label[i]; });
   pairs_.clear();
   for (const int key : by_pair_.keys) pairs_.emplace_back(key / tasks, key % tasks);
 
-  encoder_.forward(parallel, batch.size, batch.pictures, parameters, statistics, psi_.data());
   use_embeddings(parameters);
   compose(parallel, parameters, pairs_);
-  Losses losses = heads(parallel, batch, weights, parameters, gradient, logits);
+  Losses losses = heads(parallel, batch, weights, parameters, psi, logits, dpsi, gradient);
   compose_backward(parallel, parameters, gradient);
-  disentangle(parallel, batch, weights, parameters, gradient, losses);
+  disentangle(parallel, batch, weights, parameters, psi, dpsi, gradient, losses);
   if (env_) env_->backward(parameters, gradient);
   task_.backward(parameters, gradient);
-  encoder_.backward(parallel, parameters, dpsi_.data(), gradient);
-  losses.add_up(weights);
   return losses;
 }
 
 template <class T>
-void SynPo<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
-                                 const std::vector<std::pair<int, int>>& pairs) {
-  encoder_.prepare_inference(parallel, parameters, statistics);
+void SynPo<T>::prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
   use_embeddings(parameters);
   compose(parallel, parameters, pairs);
   form_.prepare_inference(parameters);
-  policy_bias_.assign(parameters + bias_[kPolicy], parameters + bias_[kPolicy] + shape_.actions);
+  policy_bias_.assign(parameters + bias_[kPolicy], parameters + bias_[kPolicy] + shape().actions);
 }
 
 template <class T>
-void SynPo<T>::infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) {
-  const int d = shape_.feature, columns = form_.columns();
-  std::vector<T> psi(size_t(size) * d), q(size_t(size) * columns);
-  encoder_.infer(thread, size, pictures, psi.data());
+void SynPo<T>::infer_head(int size, const T* psi, const int* pair, T* logits) const {
+  const int d = shape().feature, columns = form_.columns();
+  std::vector<T> q(size_t(size) * columns);
   for (int i = 0; i < size; ++i)
-    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi.data() + size_t(i) * d, q.data() + size_t(i) * columns);
+    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi + size_t(i) * d, q.data() + size_t(i) * columns);
   form_.infer(size, q.data(), logits);
-  kernels<T>().add_bias(size, shape_.actions, policy_bias_.data(), false, logits);
+  kernels<T>().add_bias(size, shape().actions, policy_bias_.data(), false, logits);
 }
 
 template class SynPo<float>;

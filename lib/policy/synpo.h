@@ -12,43 +12,37 @@
 #include <vector>
 
 #include "policy/bilinear_form.h"
+#include "policy/encoded_policy.h"
 #include "policy/groups.h"
-#include "policy/policy.h"
 #include "policy/recogniser.h"
-#include "policy/resnet.h"
 
 namespace synpo {
 
 template <class T>
-class SynPo : public Policy<T> {
+class SynPo : public EncodedPolicy<T> {
  public:
   enum class Context { kEnvAndTask, kTask };  // what coefficients are made from
   explicit SynPo(const PolicyShape& shape, Context context = Context::kEnvAndTask);
 
-  void initialise(const InitOptions& options, T* parameters, T* statistics) const override;
-  Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics, T* gradient,
-              T* logits) override;
-  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
-                         const std::vector<std::pair<int, int>>& pairs) override;
-  void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits) override;
-
-  const ResNet<T>& encoder() const { return encoder_; }
-  // psi of the last step(), [size, feature].
-  const T* last_feature() const { return psi_.data(); }
+ protected:
+  void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
+                   T* dpsi, T* gradient) override;
+  void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
+  void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
  private:
   enum Head { kPolicy, kReward, kHeads };
-  int coefficient_inputs() const { return (env_ ? 2 : 1) * shape_.embedding; }
+  using EncodedPolicy<T>::shape;
+  int coefficient_inputs() const { return (env_ ? 2 : 1) * shape().embedding; }
   void use_embeddings(const T* parameters);
   void compose(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs);
   void compose_backward(Parallel& parallel, const T* parameters, T* gradient);
-  Losses heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* gradient, T* logits);
-  void disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* gradient,
-                   Losses& losses);
+  Losses heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits, T* dpsi,
+               T* gradient);
+  void disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* dpsi,
+                   T* gradient, Losses& losses);
 
-  PolicyShape shape_;
-  ResNet<T> encoder_;
-  size_t behind_encoder_;  // where the other parameters begin
   std::optional<EmbeddingTable<T>> env_;
   EmbeddingTable<T> task_;
   Perceptron<T> coefficient_[kHeads];  // alpha, beta
@@ -64,7 +58,7 @@ class SynPo : public Policy<T> {
   const T* coefficients_[kHeads];
   Buffer<T> pair_input_, dpair_input_, dcoefficients_, composed_[kHeads], dcomposed_[kHeads];
   // Per sample.
-  Buffer<T> psi_, dpsi_, q_[kHeads], dq_[kHeads], dlogits_, psi_sorted_, dpsi_sorted_, x_, dx_;
+  Buffer<T> q_[kHeads], dq_[kHeads], dlogits_, psi_sorted_, dpsi_sorted_, x_, dx_;
   std::vector<int> truth_;
   // For inference.
   std::vector<T> policy_bias_;

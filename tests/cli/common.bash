@@ -5,7 +5,7 @@ ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
 DATA=$ROOT/tests/data/cli
 PATH="${SYNPO_BUILD:-$ROOT/build}:$PATH"
 export LC_ALL=C
-TOOLS="synpo-gen-expert synpo-train synpo-eval synpo-matrix synpo-render"
+TOOLS="synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render"
 
 # Small enough for a moment, and still the real network.
 TINY=(-q --batch-states 64 --fill 20 --running 64 --memory 30)

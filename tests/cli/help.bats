@@ -1,7 +1,7 @@
 load common
 
 # The commands that have a --help of their own.
-COMMANDS=(synpo-gen-expert synpo-train synpo-eval synpo-matrix synpo-render "synpo-matrix split" "synpo-matrix summary"
+COMMANDS=(synpo-gen-expert synpo-train synpo-finetune "synpo-finetune adapt" "synpo-finetune ppo" synpo-eval synpo-matrix synpo-render "synpo-matrix split" "synpo-matrix summary"
     "synpo-matrix table" "synpo-matrix compare" "synpo-matrix rows" "synpo-matrix cols" "synpo-matrix show" "synpo-matrix filter"
     "synpo-matrix wide" "synpo-matrix merge" "synpo-render heatmap" "synpo-render curves" "synpo-render map" "synpo-render view"
     "synpo-render episode" "synpo-render embedding" "synpo-render policy")
@@ -66,7 +66,7 @@ man_options() {
 }
 
 @test "a missing or unknown command, an operand too many, an argument that is none: 64" {
-    for tool in synpo-matrix synpo-render; do
+    for tool in synpo-matrix synpo-render synpo-finetune; do
         fails 64 "$tool"
         fails 64 "$tool" no-such-command
         says "no-such-command"
@@ -98,7 +98,7 @@ man_options() {
 }
 
 @test "every command of a tool has a section in its man page, and the other way round" {
-    for tool in synpo-matrix synpo-render; do
+    for tool in synpo-matrix synpo-render synpo-finetune; do
         "$tool" --help | awk '/^  [a-z]/ { print $1 }' | sort >in_help
         awk '/^\.Ss [a-z]/ { print $2 }' "$ROOT/man/$tool.1" | sort >in_man
         [ -s in_help ]

@@ -1,0 +1,181 @@
+#include "learn/adapt.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "nn/init.h"
+#include "world/view.h"
+
+namespace synpo {
+namespace {
+
+constexpr size_t kPicture = size_t(kGridCells) * kHistory;
+constexpr int kUnit = Policy<float>::kInferenceUnit;
+
+const TensorInfo& table(const Policy<float>& policy, const char* name) {
+  const TensorInfo* tensor = policy.parameters().find(name);
+  if (!tensor) fail(Exit::kUsage, "the method has no tensor '", name, "': nothing to adapt");
+  return *tensor;
+}
+
+bool starts_with_any(const std::string& name, std::initializer_list<const char*> prefixes) {
+  return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* prefix) { return name.starts_with(prefix); });
+}
+
+}  // namespace
+
+Model widen(const Model& model, const GridSet& from, const GridSet& world, double embedding_sd, uint64_t seed) {
+  Model wide;
+  wide.method = model.method;
+  wide.shape = model.shape;
+  wide.shape.envs = world.envs();
+  wide.window = model.window;
+  wide.seed = model.seed;
+  wide.updates = model.updates;
+  wide.states = model.states;
+  wide.policy = make_policy(wide.method, wide.shape);
+  std::vector<int> place(from.envs());  // of an old environment in the new world
+  for (int env = 0; env < from.envs(); ++env) {
+    const Maze& maze = from.maze(env);
+    place[env] = world.env_index(maze.name);
+    if (place[env] < 0 || world.maze(place[env]).hash != maze.hash) fail(Exit::kData, "environment ", quoted(maze.name), " is another one in the checkpoint");
+  }
+  std::vector<bool> old_env(world.envs(), false), old_task(world.task_count(), false);
+  for (const EnvTask& pair : model.seen) {
+    wide.seen.push_back({place[pair.env], pair.task});
+    old_env[place[pair.env]] = old_task[pair.task] = true;
+  }
+  const Layout &before = model.policy->parameters(), &after = wide.policy->parameters();
+  wide.parameters.grow(after.total());
+  wide.parameters.zero();
+  wide.statistics.grow(wide.policy->statistics().total());
+  std::copy_n(model.statistics.data(), wide.policy->statistics().total(), wide.statistics.data());
+  const TensorInfo &envs = table(*wide.policy, "embedding.env"), &tasks = table(*wide.policy, "embedding.task");
+  for (const TensorInfo& tensor : after.tensors())
+    if (tensor.name != envs.name) std::copy_n(model.parameters.data() + before.find(tensor.name)->offset, tensor.size, wide.parameters.data() + tensor.offset);
+  const int width = wide.shape.embedding;
+  for (int env = 0; env < from.envs(); ++env)
+    std::copy_n(model.parameters.data() + before.find(envs.name)->offset + size_t(env) * width, width,
+                wide.parameters.data() + envs.offset + size_t(place[env]) * width);
+  InitStream stream(seed, 3);
+  const auto renew = [&](const TensorInfo& rows, const std::vector<bool>& old) {
+    for (size_t row = 0; row < old.size(); ++row) {
+      if (old[row]) continue;
+      float* values = wide.parameters.data() + rows.offset + row * width;
+      if (embedding_sd > 0)
+        stream.normal(values, width, embedding_sd);
+      else
+        stream.uniform(values, width, xavier_bound(int(old.size()), width));
+    }
+  };
+  renew(envs, old_env);
+  renew(tasks, old_task);
+  return wide;
+}
+
+Adaptation::Adaptation(const GridSet& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed)
+    : world_(world), parallel_(parallel), model_(std::move(model)), options_(options), seed_(seed), new_env_(world.envs(), true),
+      new_task_(world.task_count(), true) {
+  for (const EnvTask& pair : model_.seen) new_env_[pair.env] = new_task_[pair.task] = false;
+  learned_ = learned();
+  for (Buffer<float>* buffer : {&gradient_, &first_moment_, &second_moment_}) {
+    buffer->grow(model_.parameters.size());
+    buffer->zero();
+  }
+}
+
+int Adaptation::new_envs() const { return int(std::count(new_env_.begin(), new_env_.end(), true)); }
+int Adaptation::new_tasks() const { return int(std::count(new_task_.begin(), new_task_.end(), true)); }
+
+std::vector<Adaptation::Span> Adaptation::learned() const {
+  std::vector<Span> spans;
+  const size_t width = size_t(model_.shape.embedding);
+  const auto add_rows = [&](const TensorInfo& tensor, const std::vector<bool>& rows) {
+    for (size_t row = 0; row < rows.size(); ++row)
+      if (rows[row]) spans.push_back({tensor.offset + row * width, width});
+  };
+  add_rows(table(*model_.policy, "embedding.env"), new_env_);
+  add_rows(table(*model_.policy, "embedding.task"), new_task_);
+  for (const TensorInfo& tensor : model_.policy->parameters().tensors())
+    if ((options_.targets.heads && starts_with_any(tensor.name, {"theta", "phi", "policy.", "reward.", "f_env.", "f_task."})) ||
+        (options_.targets.coefficients && starts_with_any(tensor.name, {"alpha.", "beta."})))
+      spans.push_back({tensor.offset, tensor.size});
+  return spans;
+}
+
+void Adaptation::add(const GridEpisode& episode) {
+  if (!model_.is_seen(episode.pair)) model_.seen.push_back(episode.pair);
+  const Maze& maze = world_.maze(episode.pair.env);
+  GridState state = episode.start;
+  GridHistory history;
+  for (size_t t = 0; t < episode.actions.size(); ++t) {
+    history.push(state.now);
+    pictures_.resize(pictures_.size() + kPicture);
+    draw_history(maze, history, model_.window, pictures_.data() + pictures_.size() - kPicture);
+    env_.push_back(episode.pair.env);
+    task_.push_back(episode.pair.task);
+    label_.push_back(episode.labels[t]);
+    taken_.push_back(episode.actions[t]);
+    reward_.push_back(float(grid_step(maze, world_.tasks()[episode.pair.task], state, episode.actions[t]).reward_cents) / 100);
+  }
+  first_.push_back(env_.size());
+}
+
+void Adaptation::compute_features() {
+  const int d = model_.shape.feature, steps = int(env_.size()), done = int(psi_.size()) / d;
+  if (done == steps) return;
+  psi_.resize(size_t(steps) * d);
+  model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), {{0, 0}});
+  parallel_.run(shard_count(steps - done, kUnit), [&](int shard, int thread) {
+    const Range range = shard_range(steps - done, kUnit, shard);
+    const size_t at = size_t(done) + range.begin;
+    const std::vector<int> pair(range.size(), 0);
+    std::vector<float> logits(size_t(range.size()) * kGridActions);
+    model_.policy->infer(thread, range.size(), pictures_.data() + at * kPicture, pair.data(), logits.data(), psi_.data() + at * d);
+  });
+}
+
+Losses Adaptation::update() {
+  if (demonstrations() == 0) fail(Exit::kData, "no demonstration to adapt from");
+  compute_features();
+  Random random(seed_, Purpose::kBatch, 0, uint64_t(updates_));
+  std::vector<size_t> rows;
+  for (int i = 0; i < options_.trajectories; ++i) {
+    const uint32_t episode = random.below(uint32_t(demonstrations()));
+    for (size_t row = first_[episode]; row < first_[episode + 1]; ++row) rows.push_back(row);
+  }
+  const int n = int(rows.size()), d = model_.shape.feature;
+  std::vector<int> env(n), task(n), label(n), taken(n);
+  std::vector<float> reward(n), psi(size_t(n) * d);
+  for (int i = 0; i < n; ++i) {
+    env[i] = env_[rows[i]];
+    task[i] = task_[rows[i]];
+    label[i] = label_[rows[i]];
+    taken[i] = taken_[rows[i]];
+    reward[i] = reward_[rows[i]];
+    std::copy_n(psi_.data() + rows[i] * d, d, psi.data() + size_t(i) * d);
+  }
+  logits_.resize(size_t(n) * kGridActions);
+  StepBatch<float> batch = {n, nullptr, env.data(), task.data(), label.data(), taken.data(), reward.data()};
+  batch.psi = psi.data();
+  const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
+                                            gradient_.data(), logits_.data());
+  if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
+  ++updates_;
+  for (const Span& span : learned_)
+    adam_step(parallel_, options_.adam, updates_, span.size, gradient_.data() + span.offset, model_.parameters.data() + span.offset,
+              first_moment_.data() + span.offset, second_moment_.data() + span.offset);
+  return losses;
+}
+
+Checkpoint Adaptation::checkpoint() const {
+  Checkpoint c = describe_model(model_, world_);
+  c.options["adapt.updates"] = concat(updates_);
+  c.options["adapt.demonstrations"] = concat(demonstrations());
+  add_tensors(c.file, "", model_.policy->parameters(), model_.parameters.data());
+  add_tensors(c.file, "", model_.policy->statistics(), model_.statistics.data());
+  return c;
+}
+
+}  // namespace synpo

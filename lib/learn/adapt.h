@@ -1,0 +1,72 @@
+// Adaptation to new environments and tasks (supplement, Section 5.4, settings 2 and 3): their embeddings are learned from a few
+// demonstrations, as in Algorithm 1, while all else stays as it is.
+//
+// New is what no seen pair of the checkpoint has. As the encoder never changes, psi of every demonstrated step is computed once.
+#pragma once
+#include <vector>
+
+#include "base/parallel.h"
+#include "learn/model.h"
+#include "nn/adam.h"
+
+namespace synpo {
+
+// What is learned beside the new embeddings.
+struct AdaptTargets {
+  bool heads = false;         // theta, the biases of policy and reward, f_env and f_task
+  bool coefficients = false;  // alpha and beta
+};
+
+struct AdaptOptions {
+  int trajectories = 64;  // of an update, drawn from the demonstrations
+  AdamOptions adam;       // Algorithm 1's
+  LossWeights losses;
+  double embedding_sd = 0;
+  AdaptTargets targets;
+};
+
+// The same model for a world of more environments: parameters are carried over by environment and task; embeddings of what no seen pair has are
+// drawn anew from `seed`. Throws kData where an environment of the checkpoint is another one in `world`, kUsage for a method without embeddings of
+// environments and tasks.
+Model widen(const Model& model, const GridSet& from, const GridSet& world, double embedding_sd, uint64_t seed);
+
+class Adaptation {
+ public:
+  // `model` as widen() gives it. New are environments and tasks that none of its seen pairs has.
+  Adaptation(const GridSet& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed);
+
+  // Takes a demonstration in. Its pair counts as seen from here on.
+  void add(const GridEpisode& episode);
+  size_t demonstrations() const { return first_.size() - 1; }
+  int new_envs() const;
+  int new_tasks() const;
+
+  Losses update();
+  const Model& model() const { return model_; }
+  Checkpoint checkpoint() const;
+
+ private:
+  struct Span {
+    size_t offset, size;  // of parameters
+  };
+  std::vector<Span> learned() const;
+  void compute_features();
+
+  const GridSet& world_;
+  Parallel& parallel_;
+  Model model_;
+  AdaptOptions options_;
+  uint64_t seed_;
+  std::vector<bool> new_env_, new_task_;
+  std::vector<Span> learned_;
+  // Demonstrated steps, episode after episode: [steps] each; first_ [episodes + 1].
+  std::vector<size_t> first_ = {0};
+  std::vector<uint8_t> pictures_;
+  std::vector<int> env_, task_, label_, taken_;
+  std::vector<float> reward_, psi_;
+  Buffer<float> gradient_, first_moment_, second_moment_;
+  std::vector<float> logits_;
+  int64_t updates_ = 0;
+};
+
+}  // namespace synpo

@@ -1,0 +1,24 @@
+#include "learn/gae.h"
+
+namespace synpo {
+
+std::vector<float> advantages(const GaeInput& input, const GaeOptions& options) {
+  std::vector<float> advantage(size_t(input.steps) * input.lanes);
+  for (int lane = 0; lane < input.lanes; ++lane) {
+    double behind = 0;
+    for (int t = input.steps - 1; t >= 0; --t) {
+      const size_t at = size_t(t) * input.lanes + lane;
+      const bool last = t == input.steps - 1;
+      const double next_value = input.end[at] == StepEnd::kTerminated ? 0
+                                : input.end[at] == StepEnd::kTruncated ? input.cut_value[at]
+                                : last                                 ? input.last_value[lane]
+                                                                       : input.value[at + input.lanes];
+      const double delta = input.reward[at] + options.discount * next_value - input.value[at];
+      behind = delta + (input.end[at] == StepEnd::kGoesOn ? options.discount * options.lambda * behind : 0);
+      advantage[at] = float(behind);
+    }
+  }
+  return advantage;
+}
+
+}  // namespace synpo

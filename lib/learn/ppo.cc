@@ -1,0 +1,368 @@
+#include "learn/ppo.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "base/error.h"
+
+namespace synpo {
+namespace {
+
+constexpr size_t kPicture = size_t(kGridCells) * kHistory;
+constexpr int kLook = 8;  // lanes that a thread looks at together
+
+// p and log p of softmax(scores); returns the entropy.
+double softmax(const float* scores, int n, double* p, double* log_p) {
+  const double top = *std::max_element(scores, scores + n);
+  double sum = 0, entropy = 0;
+  for (int a = 0; a < n; ++a) sum += p[a] = std::exp(scores[a] - top);
+  for (int a = 0; a < n; ++a) {
+    p[a] /= sum;
+    log_p[a] = scores[a] - top - std::log(sum);
+    entropy -= p[a] * log_p[a];
+  }
+  return entropy;
+}
+
+int draw_action(const double* p, int n, double uniform) {
+  for (int a = 0; a + 1 < n; ++a)
+    if ((uniform -= p[a]) < 0) return a;
+  return n - 1;
+}
+
+// A method's row of embeddings, or nothing.
+const float* embedding_row(const Model& model, const char* name, int row, int width) {
+  const TensorInfo* tensor = model.policy->parameters().find(name);
+  return tensor ? model.parameters.data() + tensor->offset + size_t(row) * width : nullptr;
+}
+
+}  // namespace
+
+std::map<std::string, std::string> PpoOptions::describe() const {
+  return {{"ppo.lanes", concat(lanes)},
+          {"ppo.rollout", concat(rollout)},
+          {"ppo.epochs", concat(epochs)},
+          {"ppo.minibatches", concat(minibatches)},
+          {"ppo.value-warm-up", concat(value_warm_up)},
+          {"ppo.value-hidden", concat(value_hidden)},
+          {"ppo.clip", concat(clip)},
+          {"ppo.entropy", concat(entropy)},
+          {"ppo.gradient-norm", concat(gradient_norm)},
+          {"ppo.discount", concat(gae.discount)},
+          {"ppo.lambda", concat(gae.lambda)},
+          {"ppo.lr", concat(optimiser.learning_rate)},
+          {"ppo.smoothing", concat(optimiser.smoothing)},
+          {"ppo.epsilon", concat(optimiser.epsilon)},
+          {"ppo.weight-decay", concat(optimiser.weight_decay)},
+          {"ppo.reward-loss", concat(losses.reward)},
+          {"ppo.env-loss", concat(losses.env)},
+          {"ppo.task-loss", concat(losses.task)}};
+}
+
+// The gradient of everything but the auxiliary losses, for the rows of a minibatch.
+class Ppo::ClippedObjective : public Objective<float> {
+ public:
+  ClippedObjective(Ppo& ppo, const std::vector<int>& rows) : ppo_(ppo), rows_(rows) {}
+
+  double apply(Parallel& parallel, int n, const float* psi, const float* logits, float* dlogits, float* dpsi) override {
+    const Rollout& rollout = ppo_.rollout_;
+    const PpoOptions& options = ppo_.options_;
+    const int d = ppo_.model_.shape.feature, in = ppo_.value_inputs();
+    std::vector<float> x(size_t(n) * in);
+    result = {};
+    result.largest_ratio = result.smallest_ratio = 1;
+    for (int i = 0; i < n; ++i) {
+      const int row = rows_[i], a = rollout.action[row];
+      double p[kGridActions], log_p[kGridActions];
+      const double entropy = softmax(logits + size_t(i) * kGridActions, kGridActions, p, log_p);
+      const double log_ratio = log_p[a] - rollout.log_probability[row], ratio = std::exp(log_ratio), advantage = rollout.advantage[row];
+      const double clipped = std::clamp(ratio, 1 - options.clip, 1 + options.clip);
+      const bool limited = clipped * advantage < ratio * advantage;
+      result.policy -= (limited ? clipped : ratio) * advantage / n;
+      result.entropy += entropy / n;
+      result.kl += (ratio - 1 - log_ratio) / n;
+      result.clip_fraction += double(ratio != clipped) / n;
+      result.largest_ratio = std::max(result.largest_ratio, ratio);
+      result.smallest_ratio = std::min(result.smallest_ratio, ratio);
+      for (int j = 0; j < kGridActions; ++j) {
+        const double along = limited ? 0 : -advantage * ratio * ((j == a) - p[j]);
+        dlogits[size_t(i) * kGridActions + j] = float((along + options.entropy * p[j] * (log_p[j] + entropy)) / n);
+      }
+      ppo_.make_value_input(psi + size_t(i) * d, rollout.env[row], rollout.task[row], x.data() + size_t(i) * in);
+    }
+    const float* value = ppo_.value_->forward(parallel, n, x.data(), ppo_.value_parameters_.data());
+    std::vector<float> dvalue(n), dx(x.size());
+    for (int i = 0; i < n; ++i) {
+      const double error = value[i] - rollout.target[rows_[i]];
+      result.value += 0.5 * error * error / n;
+      dvalue[i] = float(error / n);
+    }
+    std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
+    ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(), ppo_.value_gradient_.data());
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += dx[size_t(i) * in + c];
+    return result.policy + result.value - options.entropy * result.entropy;
+  }
+
+  Minibatch result;
+
+ private:
+  Ppo& ppo_;
+  const std::vector<int>& rows_;
+};
+
+Ppo::Ppo(const GridSet& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed)
+    : world_(world), parallel_(parallel), options_(options), seed_(seed), model_(std::move(model)),
+      lanes_(world, model_.seen, options.lanes, model_.window, seed) {
+  if (size() % options_.minibatches != 0) fail(Exit::kUsage, size(), " steps of a rollout cannot be cut into ", options_.minibatches, " minibatches");
+  value_ = std::make_unique<Perceptron<float>>("value", value_inputs(), options_.value_hidden, 1, value_layout_);
+  value_parameters_.assign(value_layout_.total(), 0);
+  value_gradient_.assign(value_layout_.total(), 0);
+  value_v_.assign(value_layout_.total(), 0);
+  InitStream stream(seed, 2);
+  value_->initialise(stream, value_parameters_.data());
+  for (Buffer<float>* buffer : {&gradient_, &v_}) {  // what lies between tensors counts in the gradient's length
+    buffer->grow(model_.parameters.size());
+    buffer->zero();
+  }
+}
+
+int Ppo::value_inputs() const {
+  const PolicyShape& shape = model_.shape;
+  const auto width = [&](const char* name, int count) { return model_.policy->parameters().find(name) ? shape.embedding : count; };
+  return shape.feature + width("embedding.env", shape.envs) + width("embedding.task", shape.tasks);
+}
+
+void Ppo::make_value_input(const float* psi, int env, int task, float* x) const {
+  const PolicyShape& shape = model_.shape;
+  x = std::copy_n(psi, shape.feature, x);
+  const auto put = [&](const char* name, int row, int count) {
+    if (const float* embedding = embedding_row(model_, name, row, shape.embedding)) {
+      x = std::copy_n(embedding, shape.embedding, x);
+      return;
+    }
+    std::fill_n(x, count, 0.0f);
+    x[row] = 1;
+    x += count;
+  };
+  put("embedding.env", env, shape.envs);
+  put("embedding.task", task, shape.tasks);
+}
+
+void Ppo::measure_statistics(int batches) {
+  std::vector<float> logits;
+  for (int batch = 0; batch < batches; ++batch) {
+    const int n = 512;
+    std::vector<uint8_t> pictures(n * kPicture);
+    std::vector<int> env(n), task(n), action(n);
+    const std::vector<float> reward(n, 0);
+    Random random(seed_, Purpose::kNoise, 0, uint64_t(batch));
+    for (int i = 0; i < n; ++i) {
+      const int lane = i % lanes_.count();
+      lanes_.draw(lane, pictures.data() + i * kPicture);
+      env[i] = lanes_.pairs()[lanes_.pair(lane)].env;
+      task[i] = lanes_.pairs()[lanes_.pair(lane)].task;
+      action[i] = int(random.below(kGridActions));
+      if (lanes_.step(lane, action[i]).ended()) lanes_.restart(lane);
+    }
+    logits.resize(size_t(n) * kGridActions);
+    StepBatch<float> steps = {n, pictures.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+    model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(), logits.data());
+  }
+  lanes_.take_finished();
+}
+
+void Ppo::look(const std::vector<int>& lanes, uint8_t* pictures, float* logits, float* psi, float* values) {
+  const int n = int(lanes.size()), d = model_.shape.feature, in = value_inputs();
+  parallel_.run(shard_count(n, kLook), [&](int shard, int thread) {
+    const Range range = shard_range(n, kLook, shard);
+    int pair[kLook];
+    std::vector<float> x(size_t(range.size()) * in);
+    Buffer<float> scratch;
+    for (int i = range.begin; i < range.end; ++i) {
+      lanes_.draw(lanes[i], pictures + i * kPicture);
+      pair[i - range.begin] = lanes_.pair(lanes[i]);
+    }
+    model_.policy->infer(thread, range.size(), pictures + range.begin * kPicture, pair, logits + size_t(range.begin) * kGridActions,
+                         psi + size_t(range.begin) * d);
+    for (int i = range.begin; i < range.end; ++i) {
+      const EnvTask at = lanes_.pairs()[lanes_.pair(lanes[i])];
+      make_value_input(psi + size_t(i) * d, at.env, at.task, x.data() + size_t(i - range.begin) * in);
+    }
+    value_->infer(range.size(), x.data(), values + range.begin, scratch);
+  });
+}
+
+void Ppo::collect() {
+  const int lanes = options_.lanes, d = model_.shape.feature;
+  Rollout& r = rollout_;
+  r.pictures.resize(size() * kPicture);
+  for (std::vector<int>* values : {&r.env, &r.task, &r.action}) values->resize(size());
+  for (std::vector<float>* values : {&r.log_probability, &r.reward, &r.value, &r.cut_value}) values->assign(size(), 0);
+  r.last_value.resize(lanes);
+  r.end.assign(size(), StepEnd::kGoesOn);
+  std::vector<std::pair<int, int>> pairs;
+  for (const EnvTask& pair : lanes_.pairs()) pairs.emplace_back(pair.env, pair.task);
+  model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), pairs);
+  value_->prepare_inference(value_parameters_.data());
+
+  std::vector<int> all(lanes);
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<float> logits(size_t(lanes) * kGridActions), psi(size_t(lanes) * d);
+  std::vector<uint8_t> spare(lanes * kPicture);
+  for (int t = 0; t < options_.rollout; ++t) {
+    const size_t first = size_t(t) * lanes;
+    look(all, r.pictures.data() + first * kPicture, logits.data(), psi.data(), r.value.data() + first);
+    std::vector<int> cut;
+    for (int lane = 0; lane < lanes; ++lane) {
+      const size_t at = first + lane;
+      const EnvTask pair = lanes_.pairs()[lanes_.pair(lane)];
+      double p[kGridActions], log_p[kGridActions];
+      softmax(logits.data() + size_t(lane) * kGridActions, kGridActions, p, log_p);
+      const int action = draw_action(p, kGridActions, Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
+      r.env[at] = pair.env;
+      r.task[at] = pair.task;
+      r.action[at] = action;
+      r.log_probability[at] = float(log_p[action]);
+      const GridStep step = lanes_.step(lane, action);
+      r.reward[at] = float(step.reward_cents) / 100;
+      if (step.terminated) lanes_.restart(lane);
+      if (step.truncated) cut.push_back(lane);
+      r.end[at] = step.terminated ? StepEnd::kTerminated : step.truncated ? StepEnd::kTruncated : StepEnd::kGoesOn;
+    }
+    if (cut.empty()) continue;
+    std::vector<float> cut_values(cut.size());
+    look(cut, spare.data(), logits.data(), psi.data(), cut_values.data());
+    for (size_t i = 0; i < cut.size(); ++i) {
+      r.cut_value[first + cut[i]] = cut_values[i];
+      lanes_.restart(cut[i]);
+    }
+  }
+  look(all, spare.data(), logits.data(), psi.data(), r.last_value.data());
+  steps_ += size();
+
+  r.advantage = advantages({options_.rollout, lanes, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()}, options_.gae);
+  r.target.resize(size());
+  double sum = 0, squares = 0, target_sum = 0, target_squares = 0;
+  for (int i = 0; i < size(); ++i) {
+    r.target[i] = r.advantage[i] + r.value[i];
+    sum += r.advantage[i];
+    squares += double(r.advantage[i]) * r.advantage[i];
+    target_sum += r.target[i];
+    target_squares += double(r.target[i]) * r.target[i];
+  }
+  const double mean = sum / size(), variance = squares / size() - mean * mean;
+  const double target_variance = target_squares / size() - target_sum / size() * target_sum / size();
+  // The advantage is what the value has not explained of the return.
+  report_.explained_variance += target_variance > 0 ? 1 - variance / target_variance : 0;
+  for (float& advantage : r.advantage) advantage = float((advantage - mean) / (std::sqrt(std::max(0.0, variance)) + 1e-8));
+}
+
+void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
+  const int n = int(rows.size());
+  std::vector<uint8_t> pictures(n * kPicture);
+  std::vector<int> env(n), task(n), action(n);
+  std::vector<float> reward(n), logits(size_t(n) * kGridActions);
+  for (int i = 0; i < n; ++i) {
+    std::copy_n(rollout_.pictures.data() + rows[i] * kPicture, kPicture, pictures.data() + i * kPicture);
+    env[i] = rollout_.env[rows[i]];
+    task[i] = rollout_.task[rows[i]];
+    action[i] = rollout_.action[rows[i]];
+    reward[i] = rollout_.reward[rows[i]];
+  }
+  ClippedObjective objective(*this, rows);
+  StepBatch<float> batch = {n, pictures.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+  batch.frozen_statistics = true;
+  batch.objective = &objective;
+  const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
+                                            gradient_.data(), logits.data());
+  if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
+  const size_t count = model_.policy->parameters().total(), value_count = value_layout_.total();
+  const double length = std::sqrt(sum_of_squares(parallel_, count, gradient_.data()) + sum_of_squares(parallel_, value_count, value_gradient_.data()));
+  const float factor = float(clip_factor(length, options_.gradient_norm));
+  scale(parallel_, count, factor, gradient_.data());
+  scale(parallel_, value_count, factor, value_gradient_.data());
+  // While the value alone learns, the policy's mean squares are gathered, but it does not move: they start at zero, and the first steps would be
+  // ten times as long as those that follow.
+  RmsPropOptions policy_steps = options_.optimiser;
+  if (value_alone) policy_steps.learning_rate = 0;
+  rmsprop_step(parallel_, policy_steps, count, gradient_.data(), model_.parameters.data(), v_.data());
+  rmsprop_step(parallel_, options_.optimiser, value_count, value_gradient_.data(), value_parameters_.data(), value_v_.data());
+  last_ = objective.result;
+}
+
+void Ppo::update() {
+  collect();
+  const bool value_alone = updates_ < options_.value_warm_up;
+  std::vector<int> order(size());
+  for (int epoch = 0; epoch < options_.epochs; ++epoch) {
+    std::iota(order.begin(), order.end(), 0);
+    Random random(seed_, Purpose::kBatch, uint64_t(epoch), uint64_t(updates_));
+    for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
+    const int rows = size() / options_.minibatches;
+    for (int m = 0; m < options_.minibatches; ++m) {
+      learn_minibatch({order.begin() + m * rows, order.begin() + (m + 1) * rows}, value_alone);
+      if (epoch == 0 && m == 0) first_ = last_;
+      report_.policy += last_.policy;
+      report_.value += last_.value;
+      report_.entropy += last_.entropy;
+      report_.kl += last_.kl;
+      report_.clip_fraction += last_.clip_fraction;
+      ++reported_minibatches_;
+    }
+  }
+  ++updates_;
+  ++reported_rollouts_;
+  model_.states += size();
+  ++model_.updates;
+}
+
+PpoReport Ppo::take_report() {
+  PpoReport report = std::exchange(report_, {});
+  report.updates = updates_;
+  report.steps = steps_;
+  report.finished = lanes_.take_finished();
+  report.explained_variance /= std::max(1, reported_rollouts_);
+  for (double* mean : {&report.policy, &report.value, &report.entropy, &report.kl, &report.clip_fraction}) *mean /= std::max(1, reported_minibatches_);
+  reported_minibatches_ = reported_rollouts_ = 0;
+  return report;
+}
+
+Checkpoint Ppo::checkpoint(bool with_training_state) const {
+  Checkpoint c = describe_model(model_, world_);
+  for (const auto& [name, value] : options_.describe()) c.options[name] = value;
+  add_tensors(c.file, "", model_.policy->parameters(), model_.parameters.data());
+  add_tensors(c.file, "", model_.policy->statistics(), model_.statistics.data());
+  if (!with_training_state) return c;
+  add_tensors(c.file, "train/ppo/v/", model_.policy->parameters(), v_.data());
+  add_tensors(c.file, "train/ppo/", value_layout_, value_parameters_.data());
+  add_tensors(c.file, "train/ppo/value/v/", value_layout_, value_v_.data());
+  const std::vector<int64_t> words = lanes_.words();
+  c.file.add("train/ppo/lanes", {int64_t(words.size())}, words.data(), words.size());
+  const int64_t position[3] = {updates_, steps_, int64_t(seed_)};
+  c.file.add("train/ppo/position", {3}, position, 3);
+  return c;
+}
+
+void Ppo::resume(const Checkpoint& checkpoint) {
+  const SafeTensors& file = checkpoint.file;
+  if (!file.has("train/ppo/position")) fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
+  for (const auto& [name, value] : options_.describe()) {
+    const auto found = checkpoint.options.find(name);
+    if (found == checkpoint.options.end() || found->second != value)
+      fail(Exit::kData, "the run in the checkpoint has another --", name.substr(4), ": ", found == checkpoint.options.end() ? "none" : found->second, ", not ", value);
+  }
+  get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
+  get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());
+  get_tensors(file, "train/ppo/value/v/", value_layout_, value_v_.data());
+  lanes_.load(file.get<int64_t>("train/ppo/lanes"));
+  int64_t position[3];
+  file.get("train/ppo/position", position, 3);
+  if (position[0] < 0 || position[1] < 0) fail(Exit::kData, "tensor 'train/ppo/position' is malformed");
+  if (uint64_t(position[2]) != seed_) fail(Exit::kData, "the run in the checkpoint has seed ", position[2], ", not ", seed_);
+  updates_ = position[0];
+  steps_ = position[1];
+}
+
+}  // namespace synpo

@@ -1,0 +1,99 @@
+// PPO fine-tuning (supplement, Section 3; Schulman et al. 2017): worlds under the learner's own actions, advantages by GAE, the clipped objective.
+//
+//   objective_t = min(ratio A, clip(ratio, 1 - c, 1 + c) A),  ratio = pi(a|s) / pi_old(a|s),  A normalised over the rollout
+//   loss = -mean objective + 1/2 mean (V - return)^2 - entropy weight * mean entropy + the auxiliary losses of imitation, at the action taken
+//
+// Normalisation keeps the statistics that it came with, so that the first minibatch behind a rollout has ratio 1. The value V is a perceptron over
+// [psi, e_env, e_task], whose gradient reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/parallel.h"
+#include "learn/gae.h"
+#include "learn/lanes.h"
+#include "learn/model.h"
+#include "nn/perceptron.h"
+#include "nn/rmsprop.h"
+
+namespace synpo {
+
+struct PpoOptions {
+  int lanes = 16, rollout = 128;      // worlds side by side, and steps of each before an update
+  int epochs = 4, minibatches = 4;    // over a rollout
+  int value_warm_up = 20;             // first rollouts, in which the value alone learns
+  int value_hidden = 512;
+  double clip = 0.1, entropy = 0.01, gradient_norm = 0.5;
+  GaeOptions gae;
+  RmsPropOptions optimiser;
+  LossWeights losses;                 // the auxiliary ones
+  std::map<std::string, std::string> describe() const;
+};
+
+// Means since the report before.
+struct PpoReport {
+  int64_t updates = 0, steps = 0;
+  Lanes::Finished finished;
+  double policy = 0, value = 0, entropy = 0, kl = 0, clip_fraction = 0, explained_variance = 0;
+};
+
+class Ppo {
+ public:
+  // Fine-tunes `model` on its seen pairs. Throws kUsage for sizes that do not divide.
+  Ppo(const GridSet& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed);
+  // Takes up a run where checkpoint() left it. Throws kData for a checkpoint that is none of such a run.
+  void resume(const Checkpoint& checkpoint);
+
+  // From scratch: running statistics of normalisation from random play.
+  void measure_statistics(int batches);
+
+  // One rollout and what is learned from it.
+  void update();
+
+  const Model& model() const { return model_; }
+  int64_t steps() const { return steps_; }
+  int64_t updates() const { return updates_; }
+  PpoReport take_report();
+  Checkpoint checkpoint(bool with_training_state) const;
+
+  // Of the last minibatch, and of the first one behind the last rollout.
+  struct Minibatch {
+    double policy = 0, value = 0, entropy = 0, kl = 0, clip_fraction = 0, largest_ratio = 0, smallest_ratio = 0;
+  };
+  const Minibatch& first_minibatch() const { return first_; }
+
+ private:
+  class ClippedObjective;
+  struct Rollout {
+    std::vector<uint8_t> pictures;
+    std::vector<int> env, task, action;
+    std::vector<float> log_probability, reward, value, cut_value, last_value, advantage, target;
+    std::vector<StepEnd> end;
+  };
+  int size() const { return options_.lanes * options_.rollout; }
+  int value_inputs() const;
+  void make_value_input(const float* psi, int env, int task, float* x) const;
+  // Scores, psi and values of the states in these lanes.
+  void look(const std::vector<int>& lanes, uint8_t* pictures, float* logits, float* psi, float* values);
+  void collect();
+  void learn_minibatch(const std::vector<int>& rows, bool value_alone);
+
+  const GridSet& world_;
+  Parallel& parallel_;
+  PpoOptions options_;
+  uint64_t seed_;
+  Model model_;
+  Layout value_layout_;
+  std::unique_ptr<Perceptron<float>> value_;
+  std::vector<float> value_parameters_, value_gradient_, value_v_;
+  Buffer<float> gradient_, v_;
+  Lanes lanes_;
+  Rollout rollout_;
+  int64_t updates_ = 0, steps_ = 0;
+  Minibatch last_, first_;
+  PpoReport report_;
+  int reported_minibatches_ = 0, reported_rollouts_ = 0;
+};
+
+}  // namespace synpo

@@ -1,0 +1,117 @@
+#include "learn/adapt.h"
+
+#include <gtest/gtest.h>
+
+#include "base/error.h"
+#include "policy_fixture.h"
+
+namespace synpo {
+namespace {
+
+Model trained_on(const GridSet& world, std::vector<EnvTask> seen) {
+  Model model;
+  model.method = "synpo";
+  model.shape = tiny_shape(false);
+  model.shape.envs = world.envs();
+  model.shape.tasks = world.task_count();
+  model.window = 1;
+  model.seen = std::move(seen);
+  model.policy = make_policy("synpo", model.shape);
+  model.parameters.grow(model.policy->parameters().total());
+  model.statistics.grow(model.policy->statistics().total());
+  model.statistics.zero();
+  model.policy->initialise({3, 1}, model.parameters.data(), model.statistics.data());
+  return model;
+}
+
+GridSet first_mazes(int count) {
+  std::vector<Maze> mazes = open_mazes("gridworld");
+  mazes.erase(mazes.begin() + count, mazes.end());
+  return GridSet(std::move(mazes));
+}
+
+GridEpisode demonstration(const GridSet& world, EnvTask pair) { return replay(world, expert_episode(world, pair, 1, 0, 0, 1)); }
+
+std::vector<float> tensor(const Model& model, const std::string& name) {
+  const TensorInfo& info = *model.policy->parameters().find(name);
+  return {model.parameters.data() + info.offset, model.parameters.data() + info.offset + info.size};
+}
+
+// Rows of a table that differ.
+std::vector<int> changed_rows(const std::vector<float>& a, const std::vector<float>& b, int width) {
+  std::vector<int> rows;
+  for (size_t row = 0; row * width < a.size(); ++row)
+    if (!std::equal(a.begin() + row * width, a.begin() + (row + 1) * width, b.begin() + row * width)) rows.push_back(int(row));
+  return rows;
+}
+
+TEST(Adapt, NewEmbeddingsAreLearnedAndNothingElseMovesByABit) {
+  const GridSet world = first_mazes(4);
+  Parallel parallel(2);
+  const Model start = widen(trained_on(world, {{0, 0}, {1, 1}, {2, 0}}), world, world, 1, 5);
+  AdaptOptions options;
+  options.adam.learning_rate = 0.03;
+  options.adam.weight_decay = 0;
+  Adaptation adaptation(world, parallel, widen(start, world, world, 1, 5), options, 5);
+  EXPECT_EQ(adaptation.new_envs(), 1);
+  EXPECT_EQ(adaptation.new_tasks(), world.task_count() - 2);
+  for (const EnvTask& pair : {EnvTask{3, 0}, EnvTask{1, 6}, EnvTask{3, 6}}) adaptation.add(demonstration(world, pair));
+  const Losses first = adaptation.update();
+  for (int i = 0; i < 200; ++i) adaptation.update();
+  EXPECT_LT(adaptation.update().policy, first.policy);
+  const Model& after = adaptation.model();
+  const int width = after.shape.embedding;
+  EXPECT_EQ(changed_rows(tensor(start, "embedding.env"), tensor(after, "embedding.env"), width), (std::vector<int>{3}));
+  for (const int row : changed_rows(tensor(start, "embedding.task"), tensor(after, "embedding.task"), width)) EXPECT_GT(row, 1);
+  for (const TensorInfo& info : after.policy->parameters().tensors())
+    if (!info.name.starts_with("embedding.")) EXPECT_EQ(tensor(after, info.name), tensor(start, info.name)) << info.name;
+  EXPECT_EQ(std::vector<float>(after.statistics.data(), after.statistics.data() + after.policy->statistics().total()),
+            std::vector<float>(start.statistics.data(), start.statistics.data() + start.policy->statistics().total()));
+  EXPECT_TRUE(after.is_seen({3, 6}));
+}
+
+TEST(Adapt, MoreIsLearnedWhereAskedFor) {
+  const GridSet world = first_mazes(3);
+  Parallel parallel(1);
+  AdaptOptions options;
+  options.targets = {true, true};
+  const Model start = widen(trained_on(world, {{0, 0}, {1, 1}}), world, world, 1, 5);
+  Adaptation adaptation(world, parallel, widen(start, world, world, 1, 5), options, 5);
+  adaptation.add(demonstration(world, {2, 0}));
+  adaptation.update();
+  for (const char* name : {"theta", "policy.bias", "f_env.out.weight", "alpha.hidden.weight", "beta.out.weight"})
+    EXPECT_NE(tensor(adaptation.model(), name), tensor(start, name)) << name;
+  EXPECT_EQ(tensor(adaptation.model(), "encoder.fc.weight"), tensor(start, "encoder.fc.weight"));
+}
+
+TEST(Adapt, AWiderWorldKeepsWhatItKnows) {
+  const GridSet few = first_mazes(2);
+  const GridSet many = GridSet::open("gridworld");
+  const Model small = trained_on(few, {{0, 0}, {1, 2}});
+  const Model wide = widen(small, few, many, 1, 5);
+  EXPECT_EQ(wide.shape.envs, many.envs());
+  const std::vector<float> before = tensor(small, "embedding.env"), after = tensor(wide, "embedding.env");
+  for (int env = 0; env < few.envs(); ++env) {
+    const int place = many.env_index(few.maze(env).name), width = small.shape.embedding;
+    EXPECT_TRUE(std::equal(before.begin() + env * width, before.begin() + (env + 1) * width, after.begin() + place * width));
+  }
+  EXPECT_EQ(tensor(wide, "theta"), tensor(small, "theta"));
+  EXPECT_TRUE(wide.is_seen({many.env_index(few.maze(1).name), 2}));
+  EXPECT_THROW(widen(small, few, first_mazes(1), 1, 5), Error);
+}
+
+TEST(Adapt, ThreadsDoNotShow) {
+  const GridSet world = first_mazes(3);
+  std::vector<std::string> bytes;
+  for (const int threads : {1, 2}) {
+    Parallel parallel(threads);
+    Adaptation adaptation(world, parallel, widen(trained_on(world, {{0, 0}, {1, 1}}), world, world, 1, 5), {}, 5);
+    for (int task = 0; task < 4; ++task) adaptation.add(demonstration(world, {2, task}));
+    for (int i = 0; i < 5; ++i) adaptation.update();
+    bytes.push_back(format_checkpoint(adaptation.checkpoint()));
+  }
+  EXPECT_TRUE(bytes[0] == bytes[1]);
+}
+
+}  // namespace
+}  // namespace synpo

@@ -1,0 +1,168 @@
+// A checkpoint on stdin, fine-tuned by PPO, a checkpoint on stdout.
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "base/error.h"
+#include "base/options.h"
+#include "base/progress.h"
+#include "base/signals.h"
+#include "format/run_log.h"
+#include "learn/evaluate.h"
+#include "learn/ppo.h"
+#include "learn/recipe.h"
+#include "synpo-finetune.h"
+
+using namespace synpo;
+
+namespace {
+
+struct Settings {
+  std::string checkpoint = "-", pairs, output = "-", save, resume, init, log, world = "gridworld", method = "synpo";
+  int64_t steps = 20000000, seed = 1, threads = 0, every = 100, report = 10, evaluate_every = 0, evaluate_episodes = 100, lanes, rollout, epochs,
+          minibatches, value_warm_up;
+  bool strip = false, force = false, quiet = false;
+};
+
+const std::vector<std::string> kColumns = {"update",  "states", "seconds", "states_per_s", "episodes", "success", "wrong",        "reward",
+                                           "length",  "policy", "value",   "entropy",      "kl",       "clip",    "explained_variance", "seen_success",
+                                           "seen_reward", "unseen_success", "unseen_reward"};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Updates until there are enough steps or a signal comes; returns the signal, or 0.
+int train(Ppo& run, Parallel& parallel, const GridSet& world, const Settings& s) {
+  TsvLog log(s.log, !s.resume.empty(), kColumns);
+  Progress progress("synpo-finetune", "steps", uint64_t(s.steps), s.quiet);
+  const auto start = std::chrono::steady_clock::now();
+  auto reported = start;
+  int64_t reported_steps = run.steps();
+  std::string note;
+  while (run.steps() < s.steps && stop_signal() == 0) {
+    run.update();
+    const int64_t updates = run.updates();
+    const bool last = run.steps() >= s.steps, evaluates = s.evaluate_every > 0 && (updates % s.evaluate_every == 0 || last);
+    if (updates % s.report == 0 || last || evaluates) {
+      const PpoReport r = run.take_report();
+      const double n = double(r.finished.episodes);  // 0 / 0: nothing ended
+      const double rate = double(run.steps() - reported_steps) / seconds_since(reported);
+      RunLogRow::Evaluation e{NAN, NAN, NAN, NAN};
+      if (evaluates) e = evaluate_sample(parallel, world, run.model(), run.model().parameters.data(), run.model().statistics.data(), int(s.evaluate_episodes));
+      log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n, r.finished.wrong / n,
+                 r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value, r.entropy, r.kl, r.clip_fraction, r.explained_variance,
+                 e.seen_success, e.seen_reward, e.unseen_success, e.unseen_reward});
+      note = short_count(rate) + " steps/s";
+      if (n > 0) note += concat(", success ", std::lround(100 * r.finished.successes / n), " %");
+      reported = std::chrono::steady_clock::now();
+      reported_steps = run.steps();
+    }
+    if (!s.save.empty() && updates % s.every == 0 && !last) write_file(s.save, format_checkpoint(run.checkpoint(true)));
+    progress.update(uint64_t(run.steps()), note);
+  }
+  return stop_signal();
+}
+
+Model random_model(const GridSet& world, const Settings& s) {
+  Model model;
+  model.method = s.method;
+  const ImitationOptions options = recipe(kDefaultRecipe, s.method);
+  model.shape = options.shape(world);
+  model.seed = uint64_t(s.seed);
+  model.policy = make_policy(model.method, model.shape);
+  model.parameters.grow(model.policy->parameters().total());
+  model.statistics.grow(model.policy->statistics().total());
+  model.statistics.zero();
+  model.policy->initialise({model.seed, options.embedding_sd}, model.parameters.data(), model.statistics.data());
+  return model;
+}
+
+void add_options(Options& options, Settings& s, PpoOptions& ppo) {
+  s.lanes = ppo.lanes;
+  s.rollout = ppo.rollout;
+  s.epochs = ppo.epochs;
+  s.minibatches = ppo.minibatches;
+  s.value_warm_up = ppo.value_warm_up;
+  options.text('c', "checkpoint", "FILE", "the trained policy", s.checkpoint)
+      .call(0, "steps", "N", "steps of all worlds together, such as 2e7 [2e7]", [&](const std::string& text) { s.steps = parse_count(text); })
+      .text('p', "pairs", "FILE", "the pairs to learn on: TSV env, task, seen (the seen ones of the checkpoint)", s.pairs)
+      .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
+      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
+      .text('o', "output", "FILE", "write the checkpoint to FILE", s.output)
+      .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and on SIGINT or SIGTERM", s.save)
+      .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
+      .text(0, "resume", "FILE", "go on from such a checkpoint, to the same bits; the other options must be the same", s.resume)
+      .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
+      .text('w', "world", "WORLD", "with --init: gridworld, or gridworld:DIR", s.world)
+      .text('m', "method", "NAME", "with --init: the method", s.method)
+      .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
+      .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
+      .integer(0, "evaluate-every", "N", "updates between two evaluations on sampled pairs; 0: none", s.evaluate_every, 0, INT64_MAX)
+      .integer(0, "evaluate-episodes", "N", "episodes of such an evaluation, for seen and for unseen pairs", s.evaluate_episodes, 1, 1000000)
+      .flag(0, "strip", "leave out of the checkpoint what only training needs", s.strip)
+      .flag('f', "force", "write the checkpoint to a terminal", s.force)
+      .flag('q', "quiet", "no progress", s.quiet)
+      .section("PPO")
+      .integer(0, "lanes", "N", "worlds side by side", s.lanes, 1, 4096)
+      .integer(0, "rollout", "N", "steps of each before an update", s.rollout, 1, 100000)
+      .integer(0, "epochs", "N", "passes over a rollout", s.epochs, 1, 1000)
+      .integer(0, "minibatches", "N", "of a pass", s.minibatches, 1, 100000)
+      .integer(0, "value-warm-up", "N", "first rollouts, from which the value alone learns", s.value_warm_up, 0, INT32_MAX)
+      .real(0, "clip", "X", "how far the ratio may go from 1", ppo.clip, 0, 1)
+      .real(0, "entropy", "X", "weight of the entropy", ppo.entropy, 0, 100)
+      .real(0, "gradient-norm", "X", "length to which gradients are clipped", ppo.gradient_norm, 0, 1e9)
+      .real(0, "discount", "X", "gamma", ppo.gae.discount, 0, 1)
+      .real(0, "lambda", "X", "lambda of generalised advantage estimation", ppo.gae.lambda, 0, 1)
+      .real(0, "lr", "X", "learning rate of RMSProp", ppo.optimiser.learning_rate, 0, 1)
+      .real(0, "smoothing", "X", "decay of its mean square", ppo.optimiser.smoothing, 0, 1)
+      .real(0, "epsilon", "X", "RMSProp's epsilon", ppo.optimiser.epsilon, 0, 1)
+      .real(0, "weight-decay", "X", "L2 term added to the gradient", ppo.optimiser.weight_decay, 0, 1)
+      .real(0, "reward-loss", "X", "weight of reward prediction", ppo.losses.reward, 0, 1e6)
+      .real(0, "env-loss", "X", "weight of environment disentanglement", ppo.losses.env, 0, 1e6)
+      .real(0, "task-loss", "X", "weight of task disentanglement", ppo.losses.task, 0, 1e6);
+}
+
+}  // namespace
+
+int ppo(int argc, char** argv) {
+  Settings s;
+  PpoOptions tuning;
+  Options options("synpo-finetune ppo", "[--steps N] [OPTION]... < CHECKPOINT > CHECKPOINT", "Fine-tunes a policy by its reward.");
+  add_options(options, s, tuning);
+  options.parse(argc, argv);
+  tuning.lanes = int(s.lanes);
+  tuning.rollout = int(s.rollout);
+  tuning.epochs = int(s.epochs);
+  tuning.minibatches = int(s.minibatches);
+  tuning.value_warm_up = int(s.value_warm_up);
+  const bool random = !s.init.empty(), resumes = !s.resume.empty();
+  if (random && s.init != "random") fail(Exit::kUsage, "option --init: found ", quoted(s.init), ", expected random");
+  if (random && options.given("checkpoint")) fail(Exit::kUsage, "-c and --init exclude each other");
+  if (!random && (options.given("world") || options.given("method"))) fail(Exit::kUsage, "-w and -m go with --init");
+
+  catch_stop_signals();
+  Parallel parallel{int(s.threads)};
+  const Checkpoint from = resumes ? load_checkpoint(s.resume) : random ? Checkpoint() : load_checkpoint(s.checkpoint);
+  const GridSet world = random && !resumes ? GridSet::open(s.world) : world_of(from);
+  Model model = random && !resumes ? random_model(world, s) : load_model(from, world);
+  if (!s.pairs.empty()) {
+    Input input(s.pairs);
+    model.seen = resolve_pairs(world, read_pairs(input), true);
+  }
+  if (model.seen.empty()) fail(Exit::kData, "no pair to learn on: give them with -p");
+  Ppo run(world, parallel, std::move(model), tuning, uint64_t(s.seed));
+  if (resumes)
+    run.resume(from);
+  else if (random)
+    run.measure_statistics(40);
+
+  Output output(s.output, Output::Kind::kBinary, s.force);
+  if (!s.save.empty()) Output probe(s.save);
+  const int signal = train(run, parallel, world, s);
+  if (!s.save.empty()) write_file(s.save, format_checkpoint(run.checkpoint(true)));
+  output.write(format_checkpoint(run.checkpoint(!s.strip)));
+  output.finish();
+  return run.steps() < s.steps && signal ? 128 + signal : 0;
+}

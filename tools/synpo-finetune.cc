@@ -1,0 +1,19 @@
+// synpo-finetune: a trained policy goes on learning, for new environments and tasks or by reward.
+#include "synpo-finetune.h"
+
+#include "base/options.h"
+
+using namespace synpo;
+
+namespace {
+
+int body(int argc, char** argv) {
+  return run_commands("synpo-finetune", "Takes a trained policy further.",
+                      {{"adapt", "embeddings of new environments and tasks from a few demonstrations", adapt},
+                       {"ppo", "reinforcement learning on the seen pairs", ppo}},
+                      argc, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) { return run_tool("synpo-finetune", argc, argv, body); }
