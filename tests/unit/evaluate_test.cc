@@ -26,7 +26,7 @@ class FunctionPolicy : public Policy<float> {
     throw std::logic_error("evaluation does not learn");
   }
   void prepare_inference(Parallel&, const float*, const float*, const std::vector<std::pair<int, int>>&) override {}
-  void infer(int, int size, const uint8_t* pictures, const int* pair, float* scores) override {
+  void infer(int, int size, const uint8_t* pictures, const int* pair, float* scores, float*) override {
     EXPECT_LE(size, kInferenceUnit);
     for (int i = 0; i < size; ++i) function_(pictures + size_t(i) * kGridCells * kHistory, pair[i], scores + size_t(i) * kGridActions);
   }
