@@ -57,7 +57,7 @@ class Ppo {
   PpoReport take_report();
   Checkpoint checkpoint(bool with_training_state) const;
 
-  // Of the last minibatch, and of the first one behind the last rollout.
+  // Of one minibatch; first_minibatch() is the first behind the last rollout.
   struct Minibatch {
     double policy = 0, value = 0, entropy = 0, kl = 0, clip_fraction = 0, largest_ratio = 0, smallest_ratio = 0;
   };

@@ -214,9 +214,7 @@ TEST(Ppo, ThreadsDoNotShowAndAResumedRunGoesOnToTheSameBits) {
   EXPECT_TRUE(bytes(resumed) == bytes(straight)) << "the resumed run went another way";
 }
 
-TEST(Ppo, LearnsToPickWhatLiesUnderIt) {
-  // One maze, one task; reward of a step is best where the agent picks the right treasure and stays away from others: entropy falls and the value
-  // learns the return.
+TEST(Ppo, LearnsToLeaveTheWrongTreasures) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(1);
   PpoOptions options = small_ppo();
