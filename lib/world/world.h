@@ -1,0 +1,119 @@
+// A world as the rooms behind this one see it: environments and tasks, rules, an expert, and what the agent sees. GridWorld (grid_set.h) and the
+// kitchens (kitchen_set.h) are two.
+#pragma once
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/random.h"
+
+namespace synpo {
+
+// A pair, by positions in the world's lists.
+struct EnvTask {
+  int env, task;
+  bool operator==(const EnvTask&) const = default;
+};
+
+// What the bytes mean, the world alone knows; those that it does not use are zero.
+struct WorldState {
+  std::array<uint8_t, 14> bytes = {};
+  uint16_t steps = 0;  // taken in the episode
+  bool operator==(const WorldState&) const = default;
+};
+
+struct WorldStep {
+  int reward_cents;  // hundredths, so that rewards add up exactly
+  bool terminated, truncated, success, wrong;  // wrong: ended by a wrong object or place
+  bool ended() const { return terminated || truncated; }
+};
+
+constexpr int kHistory = 4;  // states whose observations the network is given
+
+// The last states of a running episode, newest last. Before the first step the earlier ones are missing.
+struct StateHistory {
+  std::array<WorldState, kHistory> states;
+  uint8_t count = 0;
+  void push(const WorldState& state);
+  const WorldState& now() const { return states.back(); }
+};
+
+// What a state asks of a policy.
+enum class StepKind : uint8_t {
+  kMove,    // to move
+  kPick,    // to take or put the right thing
+  kWalkOn,  // to leave alone what could be taken or put here
+  kStart    // the first step of an episode
+};
+constexpr int kStepKinds = 4;
+
+// What an observation is made of, which decides the encoder.
+enum class Sight : uint8_t {
+  kPictures,  // uint8 [16, 16, history] of colour indices, oldest first (view.h)
+  kFeatures   // float [history, 2048] of views, oldest first, and the object in the hand (kitchen_set.h)
+};
+
+struct Environment {
+  std::string name;
+  uint64_t hash;        // of `content`
+  std::string content;  // canonical: all that makes it what it is, or empty where it lies in a file of its own
+};
+
+// Where agent and things are when an episode starts, as a trajectory holds it.
+using StartPlaces = std::map<std::string, std::pair<int, int>>;
+
+class World {
+ public:
+  virtual ~World() = default;
+
+  virtual const std::string& name() const = 0;  // as the files have it: "gridworld"
+  virtual int rules() const = 0;                // version of the rules, which trajectories and checkpoints carry
+  virtual int step_limit() const = 0;
+  virtual const std::vector<Environment>& environments() const = 0;
+  virtual const std::vector<std::string>& task_names() const = 0;
+  // The first moves() of the actions only move the agent.
+  virtual const std::vector<std::string>& action_names() const = 0;
+  virtual int moves() const = 0;
+
+  virtual WorldState reset(int env, Random& random) const = 0;
+  virtual WorldStep step(EnvTask pair, WorldState& state, int action) const = 0;
+  // The planner's action; ties go to the first in the order of the actions.
+  virtual int expert(EnvTask pair, const WorldState& state) const = 0;
+  // Undiscounted return in hundredths of each action [actions] and the planner's after it, without the step limit.
+  virtual void action_values(EnvTask pair, const WorldState& state, int* cents) const = 0;
+  // Whether something could be taken or put here, rightly or wrongly.
+  virtual bool at_choice(EnvTask pair, const WorldState& state) const = 0;
+
+  virtual Sight sight() const = 0;
+  virtual size_t observation_size() const = 0;  // bytes
+  // `window` is the radius of what is seen, where the world has one.
+  virtual void observe(int env, const StateHistory& history, int window, uint8_t* observation) const = 0;
+
+  virtual StartPlaces start_places(int env, const WorldState& start) const = 0;
+  // Throws kData, naming the field, for what start_places() never gives.
+  virtual WorldState start_state(int env, const StartPlaces& places) const = 0;
+  // Whether this can be a state of a running episode: what comes from a file may be none.
+  virtual bool valid(EnvTask pair, const WorldState& state) const = 0;
+
+  int envs() const { return int(environments().size()); }
+  int task_count() const { return int(task_names().size()); }
+  int actions() const { return int(action_names().size()); }
+  // Position of a name, or -1.
+  int env_index(const std::string& name) const;
+  int task_index(const std::string& name) const;
+  // Number of a pair, for random streams.
+  uint64_t pair_number(EnvTask pair) const { return uint64_t(pair.env) * task_names().size() + uint64_t(pair.task); }
+  // The kind of a step whose right action is `label`.
+  StepKind kind(EnvTask pair, const WorldState& state, int label) const;
+};
+
+// The world of a name on the command line: "gridworld", "gridworld:DIR", "kitchen" or "kitchen:DIR". Throws kUsage for another, kData and kNoInput
+// for what is wrong with its files.
+std::unique_ptr<World> open_world(const std::string& name);
+
+}  // namespace synpo
