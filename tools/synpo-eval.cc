@@ -41,7 +41,8 @@ int body(int argc, char** argv) {
     write_file(output_path, checkpoint.describe() + "\n", Output::Kind::kText);
     return 0;
   }
-  const GridSet world = world_of(checkpoint);
+  const std::unique_ptr<World> restored = world_of(checkpoint);
+  const World& world = *restored;
   Model model = load_model(checkpoint, world);
   if (!options.given("temperature")) temperature = model.policy->temperature();
   std::vector<PairRow> rows;
@@ -50,8 +51,8 @@ int body(int argc, char** argv) {
     Input pairs_input(pairs_path);
     rows = read_pairs(pairs_input);
   } else {
-    for (const Maze& maze : world.mazes())
-      for (const Task& task : world.tasks()) rows.push_back({maze.name, task.name(), false, ""});
+    for (const Environment& env : world.environments())
+      for (const std::string& task : world.task_names()) rows.push_back({env.name, task, false, ""});
   }
   const std::vector<EnvTask> pairs = resolve_pairs(world, rows, false);
   if (pairs.empty()) fail(Exit::kData, "no pair in '", pairs_path, "'");
@@ -75,7 +76,7 @@ int body(int argc, char** argv) {
   EpisodeSink sink;
   if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
   const std::vector<PairResult> results =
-      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, kGridStepLimit, temperature}, sink,
+      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, world.step_limit(), temperature}, sink,
                [&](size_t done) {
                  progress.update(done);
                  stop_if_asked();

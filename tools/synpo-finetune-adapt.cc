@@ -14,17 +14,20 @@ using namespace synpo;
 namespace {
 
 // The checkpoint's environments, and those of `name` that it has not.
-GridSet wider_world(const GridSet& world, const std::string& name) {
-  std::vector<Maze> mazes = world.mazes();
-  if (!name.empty())
-    for (Maze& maze : open_mazes(name)) {
-      const int known = world.env_index(maze.name);
+std::unique_ptr<World> wider_world(const World& world, const std::string& name) {
+  std::vector<Environment> environments = world.environments();
+  if (!name.empty()) {
+    const std::unique_ptr<World> more = open_world(name);
+    if (more->name() != world.name()) fail(Exit::kUsage, "the checkpoint is of ", world.name(), ", -w names ", more->name());
+    for (const Environment& env : more->environments()) {
+      const int known = world.env_index(env.name);
       if (known < 0)
-        mazes.push_back(std::move(maze));
-      else if (world.maze(known).hash != maze.hash)
-        fail(Exit::kData, "maze ", quoted(maze.name), " of ", quoted(name), " is another one in the checkpoint");
+        environments.push_back(env);
+      else if (world.environments()[known].hash != env.hash)
+        fail(Exit::kData, "environment ", quoted(env.name), " of ", quoted(name), " is another one in the checkpoint");
     }
-  return GridSet(std::move(mazes));
+  }
+  return restore_world(world.name(), environments);
 }
 
 AdaptTargets parse_targets(const std::string& list) {
@@ -74,14 +77,15 @@ int adapt(int argc, char** argv) {
   catch_stop_signals();
   Parallel parallel{int(threads)};
   const Checkpoint checkpoint = load_checkpoint(checkpoint_path);
-  const GridSet from = world_of(checkpoint);
-  const Model model = load_model(checkpoint, from);
-  const GridSet world = wider_world(from, world_name);
-  Adaptation adapted(world, parallel, widen(model, from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation, uint64_t(seed));
+  const std::unique_ptr<World> from = world_of(checkpoint);
+  const Model model = load_model(checkpoint, *from);
+  const std::unique_ptr<World> wider = wider_world(*from, world_name);
+  const World& world = *wider;
+  Adaptation adapted(world, parallel, widen(model, *from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation, uint64_t(seed));
   Output output(output_path, Output::Kind::kBinary, force);
   Input input("-");
   TrajectoryStream stream(input, world, {}, model.window);
-  while (const std::optional<GridEpisode> episode = stream.next()) adapted.add(*episode);
+  while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
   if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
   if (!quiet)
     std::fprintf(stderr, "synpo-finetune: %zu demonstrations, %d new environments, %d new tasks\n", adapted.demonstrations(), adapted.new_envs(),

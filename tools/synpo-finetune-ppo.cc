@@ -34,7 +34,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 // Updates until there are enough steps or a signal comes; returns the signal, or 0.
-int train(Ppo& run, Parallel& parallel, const GridSet& world, const Settings& s) {
+int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
   TsvLog log(s.log, !s.resume.empty(), kColumns);
   Progress progress("synpo-finetune", "steps", uint64_t(s.steps), s.quiet);
   const auto start = std::chrono::steady_clock::now();
@@ -63,20 +63,6 @@ int train(Ppo& run, Parallel& parallel, const GridSet& world, const Settings& s)
     progress.update(uint64_t(run.steps()), note);
   }
   return stop_signal();
-}
-
-Model random_model(const GridSet& world, const Settings& s) {
-  Model model;
-  model.method = s.method;
-  const ImitationOptions options = recipe(kDefaultRecipe, s.method);
-  model.shape = options.shape(world);
-  model.seed = uint64_t(s.seed);
-  model.policy = make_policy(model.method, model.shape);
-  model.parameters.grow(model.policy->parameters().total());
-  model.statistics.grow(model.policy->statistics().total());
-  model.statistics.zero();
-  model.policy->initialise({model.seed, options.embedding_sd}, model.parameters.data(), model.statistics.data());
-  return model;
 }
 
 void add_options(Options& options, Settings& s, PpoOptions& ppo) {
@@ -145,8 +131,11 @@ int ppo(int argc, char** argv) {
   catch_stop_signals();
   Parallel parallel{int(s.threads)};
   const Checkpoint from = resumes ? load_checkpoint(s.resume) : random ? Checkpoint() : load_checkpoint(s.checkpoint);
-  const GridSet world = random && !resumes ? GridSet::open(s.world) : world_of(from);
-  Model model = random && !resumes ? random_model(world, s) : load_model(from, world);
+  const bool fresh = random && !resumes;
+  const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from);
+  const World& world = *opened;
+  const ImitationOptions network = recipe(kDefaultRecipe, s.method);
+  Model model = fresh ? fresh_model(s.method, network.shape(world), {uint64_t(s.seed), network.embedding_sd}) : load_model(from, world);
   if (!s.pairs.empty()) {
     Input input(s.pairs);
     model.seen = resolve_pairs(world, read_pairs(input), true);

@@ -10,13 +10,13 @@ using namespace synpo;
 
 namespace {
 
-void relabel(const GridSet& world, Output& output) {
+void relabel(const World& world, Output& output) {
   Input input("-");
   std::string line;
   while (input.line(line)) {
     stop_if_asked();
     try {
-      output.write(format_trajectory(relabelled(world, parse_trajectory(line, kGridActions, kGridStepLimit))) + "\n");
+      output.write(format_trajectory(relabelled(world, parse_trajectory(line, world.actions(), world.step_limit()))) + "\n");
     } catch (const Error& error) {
       input.bad_line(error.what());
     }
@@ -36,7 +36,7 @@ int gen_expert(int argc, char** argv) {
       .integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's", noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
-      .integer(0, "window", "R", "window radius noted in the records (0: blind)", window, 0, kGridSide)
+      .integer(0, "window", "R", "window radius noted in the records (0: blind)", window, 0, 16)
       .text('w', "world", "WORLD", "gridworld, or gridworld:DIR for the map*.txt of a folder", world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .flag('q', "quiet", "no progress", quiet);
@@ -47,7 +47,8 @@ int gen_expert(int argc, char** argv) {
   if (per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
 
   catch_stop_signals();
-  const GridSet world = GridSet::open(world_name);
+  const std::unique_ptr<World> opened = open_world(world_name);
+  const World& world = *opened;
   Output output(output_path);
   if (relabel_stream) {
     relabel(world, output);

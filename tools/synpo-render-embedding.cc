@@ -7,6 +7,7 @@
 #include "draw/embedding_picture.h"
 #include "learn/model.h"
 #include "synpo-render.h"
+#include "world/grid_set.h"
 
 using namespace synpo;
 
@@ -62,7 +63,8 @@ int embedding(int argc, char** argv) {
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   Input input(operands.empty() ? "-" : operands[0]);
   const Checkpoint checkpoint = read_checkpoint(input);
-  const GridSet world = world_of(checkpoint);
+  const std::unique_ptr<World> restored = world_of(checkpoint);
+  const GridSet& world = as_gridworld(*restored, "a picture of embeddings");
   const Model model = load_model(checkpoint, world);
 
   std::vector<Row> envs, tasks;

@@ -10,20 +10,21 @@
 #include "draw/video.h"
 #include "learn/stream.h"
 #include "synpo-render.h"
+#include "world/grid_set.h"
 
 using namespace synpo;
 
 namespace {
 
 struct Read {
-  GridEpisode episode;
+  Episode episode;
   int window;
 };
 
 Read read_episode(Input& input, const GridSet& world, int64_t line) {
   TrajectoryStream stream(input, world, {});
   const uint64_t before = stream.length_up_to(uint64_t(line - 1));
-  const std::optional<GridEpisode> episode = stream.next();
+  const std::optional<Episode> episode = stream.next();
   if (!episode) fail(Exit::kData, input.name(), ": it ends after ", before, before == 1 ? " line" : " lines", ", before line ", line);
   return {*episode, stream.window()};
 }
@@ -82,7 +83,7 @@ int episode(int argc, char** argv) {
   Input input(operands.empty() ? "-" : operands[0]);
   const Read read = read_episode(input, world, line);
   const EnvTask pair = read.episode.pair;
-  const Film film = play_film(world.maze(pair.env), world.tasks()[pair.task], read.episode.start, read.episode.actions, read.window);
+  const Film film = play_film(world.maze(pair.env), world.tasks()[pair.task], to_grid_state(read.episode.start), read.episode.actions, read.window);
   if (ansi) {
     output->write(terminal_path(film, terminal_colour(output->is_stdout() ? 1 : -1)));
     output->finish();

@@ -52,7 +52,8 @@ int policy(int argc, char** argv) {
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   Input input(operands.empty() ? "-" : operands[0]);
   const Checkpoint checkpoint = read_checkpoint(input);
-  const GridSet world = world_of(checkpoint);
+  const std::unique_ptr<World> restored = world_of(checkpoint);
+  const GridSet& world = as_gridworld(*restored, "a picture of a policy");
   Model model = load_model(checkpoint, world);
   const EnvTask pair = find_pair(world, env, task_name);
   const Maze& maze = world.maze(pair.env);
@@ -60,7 +61,7 @@ int policy(int argc, char** argv) {
 
   Parallel parallel(1);
   model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), {{pair.env, pair.task}});
-  const GridState start = episode_start(world, pair, uint64_t(seed), Purpose::kEpisodeStart, episode);
+  const GridState start = to_grid_state(episode_start(world, pair, uint64_t(seed), Purpose::kEpisodeStart, episode));
   std::vector<PolicyStage> stages;
   for (const int number : {1, 2})
     if (stage == 0 || stage == number) {

@@ -141,7 +141,8 @@ int body(int argc, char** argv) {
 
   Parallel parallel(int(s.threads));
   const Checkpoint from = resumes ? load(s.resume) : Checkpoint();
-  const GridSet world = resumes ? world_of(from) : GridSet::open(s.world);
+  const std::unique_ptr<World> opened = resumes ? world_of(from) : open_world(s.world);
+  const World& world = *opened;
   std::vector<EnvTask> seen;
   if (!s.pairs.empty()) {
     Input input(s.pairs);

@@ -82,7 +82,7 @@ void draw_way(Canvas& canvas, const MazePlace& place, const Film& film, int mome
   }
   for (int i = 0; i < moment; ++i) {
     const int picked = treasure_picked(film, i);
-    if (picked >= 0) (film.results[i].wrong_pick ? draw_wrong : draw_picked)(canvas, place.box(treasures[picked]));
+    if (picked >= 0) (film.results[i].wrong ? draw_wrong : draw_picked)(canvas, place.box(treasures[picked]));
   }
   if (with_agent) draw_agent(canvas, place.box(cells.back()));
   draw_counts(canvas, place, cells);
@@ -107,7 +107,7 @@ void draw_time_bar(Canvas& canvas, const Box& bar, const Film& film, const Pixel
   for (int i = 0; i < steps; ++i)
     if (const int picked = treasure_picked(film, i); picked >= 0) {
       const Box box = {bar.x + (bar.width - sign) / 2, row(i + 1) - sign / 2, sign, sign};
-      on_treasure(picked, film.results[i].wrong_pick ? draw_wrong : draw_picked)(canvas, box);
+      on_treasure(picked, film.results[i].wrong ? draw_wrong : draw_picked)(canvas, box);
     }
   canvas.text(bar.x - (sign - bar.width) / 2, bar.y - px(14), "step", text, kSoftInk);
 }
@@ -122,7 +122,7 @@ std::vector<KeyEntry> key_entries(const Film& film, int cell) {
   key.push_back({{treasure_sign(film.task.first)}, "pick first"});
   key.push_back({{treasure_sign(film.task.second)}, "pick second"});
   if (film.states.back().picked > 0) key.push_back({{draw_picked}, "picked"});
-  if (film.results.back().wrong_pick) key.push_back({{draw_wrong}, "wrong pick"});
+  if (film.results.back().wrong) key.push_back({{draw_wrong}, "wrong pick"});
   const auto moments = moments_in(cells_up_to(film, film.steps()));
   if (count_size(cell) > 0 && *std::max_element(moments.begin(), moments.end()) > kPathLanes)
     key.push_back({{draw_count_sign}, "moments in this cell"});

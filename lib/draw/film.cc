@@ -59,8 +59,8 @@ std::vector<int> key_moments(const Film& film, int count) {
 }
 
 std::string outcome(const Film& film) {
-  const GridStep& end = film.results.back();
-  return end.success ? "success" : end.wrong_pick ? "wrong pick" : end.truncated ? "timeout" : "unfinished";
+  const WorldStep& end = film.results.back();
+  return end.success ? "success" : end.wrong ? "wrong pick" : end.truncated ? "timeout" : "unfinished";
 }
 
 std::string describe(const Film& film) {

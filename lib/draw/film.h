@@ -15,7 +15,7 @@ struct Film {
   int radius;                     // of the agent's window
   std::vector<GridState> states;  // before every action, and after the last
   std::vector<uint8_t> actions;
-  std::vector<GridStep> results;  // of every action
+  std::vector<WorldStep> results;  // of every action
   int steps() const { return int(actions.size()); }
 };
 

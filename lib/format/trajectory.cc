@@ -12,6 +12,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr char kFormat[] = "synpo-trajectory";
+constexpr int kPlaceLimit = 1 << 20;
 
 const Json& need(const Json& object, const char* field) {
   const auto found = object.find(field);
@@ -113,7 +114,7 @@ Trajectory parse_trajectory(const std::string& line, int actions, int step_limit
   if (!start.is_object() || start.size() > 64) wrong("start", start, "an object of places");
   for (const auto& [name, place] : start.items()) {
     if (!place.is_array() || place.size() != 2) wrong("start", place, "[row, column]");
-    t.start[name] = {int(whole("start", place[0], 0, 1 << 20)), int(whole("start", place[1], 0, 1 << 20))};
+    t.start[name] = {int(whole("start", place[0], -kPlaceLimit, kPlaceLimit)), int(whole("start", place[1], -kPlaceLimit, kPlaceLimit))};
   }
   t.actions = action_list(need(object, "actions"), "actions", actions, step_limit);
   if (object.contains("labels")) t.labels = action_list(object["labels"], "labels", actions, step_limit);

@@ -4,13 +4,12 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "learn/running_episode.h"
 #include "nn/init.h"
-#include "world/view.h"
 
 namespace synpo {
 namespace {
 
-constexpr size_t kPicture = size_t(kGridCells) * kHistory;
 constexpr int kUnit = Policy<float>::kInferenceUnit;
 
 const TensorInfo& table(const Policy<float>& policy, const char* name) {
@@ -25,7 +24,7 @@ bool starts_with_any(const std::string& name, std::initializer_list<const char*>
 
 }  // namespace
 
-Model widen(const Model& model, const GridSet& from, const GridSet& world, double embedding_sd, uint64_t seed) {
+Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed) {
   Model wide;
   wide.method = model.method;
   wide.shape = model.shape;
@@ -37,9 +36,10 @@ Model widen(const Model& model, const GridSet& from, const GridSet& world, doubl
   wide.policy = make_policy(wide.method, wide.shape);
   std::vector<int> place(from.envs());  // of an old environment in the new world
   for (int env = 0; env < from.envs(); ++env) {
-    const Maze& maze = from.maze(env);
-    place[env] = world.env_index(maze.name);
-    if (place[env] < 0 || world.maze(place[env]).hash != maze.hash) fail(Exit::kData, "environment ", quoted(maze.name), " is another one in the checkpoint");
+    const Environment& old = from.environments()[env];
+    place[env] = world.env_index(old.name);
+    if (place[env] < 0 || world.environments()[place[env]].hash != old.hash)
+      fail(Exit::kData, "environment ", quoted(old.name), " is another one in the checkpoint");
   }
   std::vector<bool> old_env(world.envs(), false), old_task(world.task_count(), false);
   for (const EnvTask& pair : model.seen) {
@@ -74,7 +74,7 @@ Model widen(const Model& model, const GridSet& from, const GridSet& world, doubl
   return wide;
 }
 
-Adaptation::Adaptation(const GridSet& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed)
+Adaptation::Adaptation(const World& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed)
     : world_(world), parallel_(parallel), model_(std::move(model)), options_(options), seed_(seed), new_env_(world.envs(), true),
       new_task_(world.task_count(), true) {
   for (const EnvTask& pair : model_.seen) new_env_[pair.env] = new_task_[pair.task] = false;
@@ -104,20 +104,19 @@ std::vector<Adaptation::Span> Adaptation::learned() const {
   return spans;
 }
 
-void Adaptation::add(const GridEpisode& episode) {
+void Adaptation::add(const Episode& episode) {
   if (!model_.is_seen(episode.pair)) model_.seen.push_back(episode.pair);
-  const Maze& maze = world_.maze(episode.pair.env);
-  GridState state = episode.start;
-  GridHistory history;
+  const size_t size = world_.observation_size();
+  RunningEpisode running;
+  running.start(episode.pair, episode.start);
   for (size_t t = 0; t < episode.actions.size(); ++t) {
-    history.push(state.now);
-    pictures_.resize(pictures_.size() + kPicture);
-    draw_history(maze, history, model_.window, pictures_.data() + pictures_.size() - kPicture);
+    observations_.resize(observations_.size() + size);
+    world_.observe(episode.pair.env, running.history, model_.window, observations_.data() + observations_.size() - size);
     env_.push_back(episode.pair.env);
     task_.push_back(episode.pair.task);
     label_.push_back(episode.labels[t]);
     taken_.push_back(episode.actions[t]);
-    reward_.push_back(float(grid_step(maze, world_.tasks()[episode.pair.task], state, episode.actions[t]).reward_cents) / 100);
+    reward_.push_back(float(running.step(world_, episode.actions[t]).reward_cents) / 100);
   }
   first_.push_back(env_.size());
 }
@@ -131,8 +130,8 @@ void Adaptation::compute_features() {
     const Range range = shard_range(steps - done, kUnit, shard);
     const size_t at = size_t(done) + range.begin;
     const std::vector<int> pair(range.size(), 0);
-    std::vector<float> logits(size_t(range.size()) * kGridActions);
-    model_.policy->infer(thread, range.size(), pictures_.data() + at * kPicture, pair.data(), logits.data(), psi_.data() + at * d);
+    std::vector<float> logits(size_t(range.size()) * world_.actions());
+    model_.policy->infer(thread, range.size(), observations_.data() + at * world_.observation_size(), pair.data(), logits.data(), psi_.data() + at * d);
   });
 }
 
@@ -156,7 +155,7 @@ Losses Adaptation::update() {
     reward[i] = reward_[rows[i]];
     std::copy_n(psi_.data() + rows[i] * d, d, psi.data() + size_t(i) * d);
   }
-  logits_.resize(size_t(n) * kGridActions);
+  logits_.resize(size_t(n) * world_.actions());
   StepBatch<float> batch = {n, nullptr, env.data(), task.data(), label.data(), taken.data(), reward.data()};
   batch.psi = psi.data();
   const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),

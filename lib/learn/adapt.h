@@ -28,15 +28,15 @@ struct AdaptOptions {
 // The same model for a world of more environments: parameters are carried over by environment and task; embeddings of what no seen pair has are
 // drawn anew from `seed`. Throws kData where an environment of the checkpoint is another one in `world`, kUsage for a method without embeddings of
 // environments and tasks.
-Model widen(const Model& model, const GridSet& from, const GridSet& world, double embedding_sd, uint64_t seed);
+Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed);
 
 class Adaptation {
  public:
   // `model` as widen() gives it. New are environments and tasks that none of its seen pairs has.
-  Adaptation(const GridSet& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed);
+  Adaptation(const World& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed);
 
   // Takes a demonstration in. Its pair counts as seen from here on.
-  void add(const GridEpisode& episode);
+  void add(const Episode& episode);
   size_t demonstrations() const { return first_.size() - 1; }
   int new_envs() const;
   int new_tasks() const;
@@ -52,7 +52,7 @@ class Adaptation {
   std::vector<Span> learned() const;
   void compute_features();
 
-  const GridSet& world_;
+  const World& world_;
   Parallel& parallel_;
   Model model_;
   AdaptOptions options_;
@@ -61,7 +61,7 @@ class Adaptation {
   std::vector<Span> learned_;
   // Demonstrated steps, episode after episode: [steps] each; first_ [episodes + 1].
   std::vector<size_t> first_ = {0};
-  std::vector<uint8_t> pictures_;
+  std::vector<uint8_t> observations_;
   std::vector<int> env_, task_, label_, taken_;
   std::vector<float> reward_, psi_;
   Buffer<float> gradient_, first_moment_, second_moment_;

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <mutex>
 
+#include "learn/running_episode.h"
 #include "nn/loss.h"
-#include "world/view.h"
 
 namespace synpo {
 namespace {
@@ -15,24 +15,24 @@ constexpr int kLanes = Policy<float>::kInferenceUnit;
 // One running episode.
 struct Lane {
   size_t job;  // in the list of episodes
-  GridEpisode played;
-  GridState state;
-  GridHistory history;
+  Episode played;
+  RunningEpisode running;
   std::vector<int> rewards;
   int64_t reward_cents = 0;
 };
 
 // The best action, or one drawn from softmax(scores / temperature) where that is over 0; uniform() gives a number in [0, 1).
 template <class Uniform>
-int choose(const float* scores, double temperature, Uniform&& uniform) {
-  if (temperature == 0) return argmax(scores, kGridActions);
-  const float top = *std::max_element(scores, scores + kGridActions);
-  double weight[kGridActions], sum = 0;
-  for (int a = 0; a < kGridActions; ++a) sum += weight[a] = std::exp((scores[a] - top) / temperature);
+int choose(const float* scores, int actions, double temperature, Uniform&& uniform) {
+  if (temperature == 0) return argmax(scores, actions);
+  const float top = *std::max_element(scores, scores + actions);
+  const auto weight = [&](int a) { return std::exp((scores[a] - top) / temperature); };
+  double sum = 0;
+  for (int a = 0; a < actions; ++a) sum += weight(a);
   double left = uniform() * sum;
-  for (int a = 0; a < kGridActions - 1; ++a)
-    if ((left -= weight[a]) < 0) return a;
-  return kGridActions - 1;
+  for (int a = 0; a < actions - 1; ++a)
+    if ((left -= weight(a)) < 0) return a;
+  return actions - 1;
 }
 
 }  // namespace
@@ -46,11 +46,12 @@ void PairResult::add(const PairResult& other) {
   length += other.length;
 }
 
-std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const GridSet& world, const std::vector<EnvTask>& pairs,
+std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
                                  const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink,
                                  const std::function<void(size_t)>& progress) {
   // Shards keep their lanes filled from a list of their own. Few long lists waste little at their ends.
-  const int total = int(episodes.size());
+  const int total = int(episodes.size()), actions = world.actions();
+  const size_t observation = world.observation_size();
   const int size = std::clamp(shard_count(total, 16), kLanes, 2048);
   const int shards = shard_count(total, size);
   std::vector<std::vector<PairResult>> results(shards);
@@ -65,47 +66,44 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
     std::vector<PairResult>& result = results[shard];
     result.resize(pairs.size());
     std::vector<Trajectory> record(sink ? range.size() : 0);
-    std::vector<uint8_t> pictures(size_t(kLanes) * kGridCells * kHistory);
-    std::vector<float> logits(size_t(kLanes) * kGridActions);
+    std::vector<uint8_t> observations(kLanes * observation);
+    std::vector<float> logits(size_t(kLanes) * actions);
     std::vector<int> pair_of(kLanes, 0);
     std::vector<Lane> lanes;
     size_t next = size_t(range.begin);
     const auto start = [&](Lane& lane) {
       const EvalEpisode& job = episodes[next];
-      lane = Lane{next++, {pairs[job.pair], {}, {}, {}}, {}, {}, {}, 0};
-      lane.state = lane.played.start = episode_start(world, pairs[job.pair], options.seed, Purpose::kEvaluation, job.number);
-      lane.history.push(lane.state.now);
+      const EnvTask pair = pairs[job.pair];
+      lane = Lane{next++, {pair, episode_start(world, pair, options.seed, Purpose::kEvaluation, job.number), {}, {}}, {}, {}, 0};
+      lane.running.start(pair, lane.played.start);
     };
     while (lanes.size() < kLanes && next < size_t(range.end)) start(lanes.emplace_back());
     while (!lanes.empty()) {
       for (size_t i = 0; i < lanes.size(); ++i) {
-        const EnvTask pair = lanes[i].played.pair;
-        draw_history(world.maze(pair.env), lanes[i].history, options.window, pictures.data() + i * kGridCells * kHistory);
+        world.observe(lanes[i].running.pair.env, lanes[i].running.history, options.window, observations.data() + i * observation);
         pair_of[i] = episodes[lanes[i].job].pair;
       }
-      policy.infer(thread, int(lanes.size()), pictures.data(), pair_of.data(), logits.data());
+      policy.infer(thread, int(lanes.size()), observations.data(), pair_of.data(), logits.data());
       for (size_t i = 0; i < lanes.size();) {
         Lane& lane = lanes[i];
-        const EnvTask pair = lane.played.pair;
-        const Task& task = world.tasks()[pair.task];
-        const int action = choose(logits.data() + i * kGridActions, options.temperature, [&] {
+        const EnvTask pair = lane.running.pair;
+        const int action = choose(logits.data() + i * actions, actions, options.temperature, [&] {
           const EvalEpisode& job = episodes[lane.job];
-          return Random(options.seed, Purpose::kSample, world.pair_number(pair.env, pair.task), uint64_t(job.number) << 16 | lane.state.steps).uniform();
+          return Random(options.seed, Purpose::kSample, world.pair_number(pair), uint64_t(job.number) << 16 | lane.running.now().steps).uniform();
         });
         if (sink) {
-          lane.played.labels.push_back(uint8_t(world.planner(pair.env).action(task, lane.state)));
+          lane.played.labels.push_back(uint8_t(world.expert(pair, lane.running.now())));
           lane.played.actions.push_back(uint8_t(action));
         }
-        GridStep step = grid_step(world.maze(pair.env), task, lane.state, action);
-        if (lane.state.steps >= options.step_limit && !step.terminated) step.truncated = true;
+        WorldStep step = lane.running.step(world, action);
+        if (lane.running.now().steps >= options.step_limit && !step.terminated) step.truncated = true;
         lane.reward_cents += step.reward_cents;
         if (sink) lane.rewards.push_back(step.reward_cents);
-        lane.history.push(lane.state.now);
         if (!step.ended()) {
           ++i;
           continue;
         }
-        result[pair_of[i]].add({1, step.success, step.wrong_pick, step.truncated, lane.reward_cents, lane.state.steps});
+        result[pair_of[i]].add({1, step.success, step.wrong, step.truncated, lane.reward_cents, lane.running.now().steps});
         if (sink)
           record[lane.job - range.begin] = to_trajectory(world, lane.played, lane.rewards, step, options.seed, episodes[lane.job].number, options.window);
         if (progress) {
@@ -117,7 +115,7 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
           ++i;
         } else {
           // The last lane takes this one's place, and its scores: it has not moved yet.
-          std::copy_n(logits.data() + (lanes.size() - 1) * kGridActions, kGridActions, logits.data() + i * kGridActions);
+          std::copy_n(logits.data() + (lanes.size() - 1) * actions, actions, logits.data() + i * actions);
           pair_of[i] = pair_of[lanes.size() - 1];
           if (i + 1 < lanes.size()) lane = std::move(lanes.back());
           lanes.pop_back();
@@ -139,7 +137,7 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
   return sum;
 }
 
-RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const GridSet& world, const Model& model, const float* parameters, const float* statistics,
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
                                       int episodes) {
   std::vector<EnvTask> groups[2];  // unseen, seen
   for (int env = 0; env < world.envs(); ++env)
@@ -156,7 +154,7 @@ RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const GridSet& world, 
     model.policy->prepare_inference(parallel, parameters, statistics, pairs);
     PairResult sum;
     for (const PairResult& result :
-         evaluate(parallel, *model.policy, world, groups[seen], jobs, {model.seed, model.window, kGridStepLimit, model.policy->temperature()}))
+         evaluate(parallel, *model.policy, world, groups[seen], jobs, {model.seed, model.window, world.step_limit(), model.policy->temperature()}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;

@@ -24,7 +24,7 @@ struct EvalEpisode {
 struct EvalOptions {
   uint64_t seed = 1;
   int window = 1;
-  int step_limit = kGridStepLimit;
+  int step_limit = 300;
   double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
 };
 
@@ -33,13 +33,13 @@ using EpisodeSink = std::function<void(const Trajectory&)>;
 
 // Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the order of
 // `pairs`; neither threads nor what else is in the list changes an episode.
-std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const GridSet& world, const std::vector<EnvTask>& pairs,
+std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
                                  const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink = nullptr,
                                  const std::function<void(size_t done)>& progress = nullptr);
 
 // Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones
 // at every call. NaN where there are no such pairs. The weights are given apart: a run may evaluate others than those it learns with.
-RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const GridSet& world, const Model& model, const float* parameters, const float* statistics,
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
                                       int episodes);
 
 }  // namespace synpo

@@ -11,18 +11,11 @@
 namespace synpo {
 namespace {
 
-Model fresh_model(const GridSet& world, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen, uint64_t seed) {
-  Model model;
-  model.method = method;
-  model.shape = options.shape(world);
+// The window is not known before the first trajectory.
+Model start_model(const World& world, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen, uint64_t seed) {
+  Model model = fresh_model(method, options.shape(world), {seed, options.embedding_sd});
   model.window = -1;
   model.seen = std::move(seen);
-  model.seed = seed;
-  model.policy = make_policy(method, model.shape);
-  model.parameters.grow(model.policy->parameters().total());
-  model.statistics.grow(model.policy->statistics().total());
-  model.statistics.zero();
-  model.policy->initialise({seed, options.embedding_sd}, model.parameters.data(), model.statistics.data());
   return model;
 }
 
@@ -33,9 +26,9 @@ void copy(const Buffer<float>& from, Buffer<float>& to) {
 
 }  // namespace
 
-Imitation::Imitation(const GridSet& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
+Imitation::Imitation(const World& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
                      std::vector<EnvTask> seen, uint64_t seed)
-    : world_(world), parallel_(parallel), options_(options), model_(fresh_model(world, method, options, std::move(seen), seed)),
+    : world_(world), parallel_(parallel), options_(options), model_(start_model(world, method, options, std::move(seen), seed)),
       memory_(size_t(options.memory)), running_(world, options.running_options(0, 0), seed), seen_grows_(model_.seen.empty()) {
   const size_t count = model_.parameters.size();
   gradient_.grow(count);
@@ -47,7 +40,7 @@ Imitation::Imitation(const GridSet& world, Parallel& parallel, const std::string
   copy(model_.statistics, average_statistics_);
 }
 
-Imitation::Imitation(const GridSet& world, Parallel& parallel, const Checkpoint& checkpoint)
+Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint)
     : Imitation(world, parallel, checkpoint.method, parse_options(checkpoint.options), {}, checkpoint.seed) {
   const SafeTensors& file = checkpoint.file;
   if (!file.has("train/position")) fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
@@ -86,7 +79,7 @@ void Imitation::take_weights(const Model& other) {
 void Imitation::add_trajectories(TrajectoryStream& stream) {
   const int64_t wanted = int64_t(model_.updates == 0 ? std::max(options_.fill, options_.read) : options_.read);
   for (int64_t i = 0; i < wanted; ++i) {
-    std::optional<GridEpisode> episode = stream.next();
+    std::optional<Episode> episode = stream.next();
     if (!episode) break;
     if (seen_grows_ && !model_.is_seen(episode->pair)) model_.seen.push_back(episode->pair);
     memory_.add(std::move(*episode));
@@ -107,10 +100,10 @@ bool Imitation::update(TrajectoryStream& stream) {
   else
     TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed, model_.updates, batch_);
 
-  const int n = batch_.size();
-  logits_.grow(size_t(n) * kGridActions);
+  const int n = batch_.size(), actions = world_.actions();
+  logits_.grow(size_t(n) * actions);
   const StepBatch<float> steps = {n,
-                                  batch_.pictures.data(),
+                                  batch_.observations.data(),
                                   batch_.env.data(),
                                   batch_.task.data(),
                                   batch_.label.data(),
@@ -136,7 +129,7 @@ bool Imitation::update(TrajectoryStream& stream) {
 
   greedy_.resize(n);
   for (int i = 0; i < n; ++i) {
-    greedy_[i] = argmax(logits_.data() + size_t(i) * kGridActions, kGridActions);
+    greedy_[i] = argmax(logits_.data() + size_t(i) * actions, actions);
     const int kind = int(batch_.kind[i]);
     ++kind_count_[kind];
     kind_right_[kind] += greedy_[i] == batch_.label[i];

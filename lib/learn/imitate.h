@@ -15,10 +15,10 @@ namespace synpo {
 class Imitation {
  public:
   // A fresh run of `method`. No seen pairs: those that the stream brings.
-  Imitation(const GridSet& world, Parallel& parallel, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen,
+  Imitation(const World& world, Parallel& parallel, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen,
             uint64_t seed);
   // A run that goes on from a checkpoint with its train/ part. Throws kData where that is missing or malformed.
-  Imitation(const GridSet& world, Parallel& parallel, const Checkpoint& checkpoint);
+  Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint);
   // Takes the weights of another model, whose shape must be this one's (kData).
   void take_weights(const Model& other);
 
@@ -52,7 +52,7 @@ class Imitation {
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const { return options_.averaging > 0 ? average_statistics_ : model_.statistics; }
 
-  const GridSet& world_;
+  const World& world_;
   Parallel& parallel_;
   ImitationOptions options_;
   Model model_;

@@ -1,85 +1,74 @@
 #include "learn/lanes.h"
 
+#include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 #include "base/error.h"
 
 namespace synpo {
 
-Lanes::Lanes(const GridSet& world, std::vector<EnvTask> pairs, int count, int window, uint64_t seed)
+Lanes::Lanes(const World& world, std::vector<EnvTask> pairs, int count, int window, uint64_t seed)
     : world_(&world), pairs_(std::move(pairs)), window_(window), seed_(seed), lanes_(count) {
   for (int lane = 0; lane < count; ++lane) restart(lane);
 }
 
-void Lanes::draw(int lane, uint8_t* pictures) const {
-  draw_history(world_->maze(pairs_[lanes_[lane].pair].env), lanes_[lane].history, window_, pictures);
+void Lanes::observe(int lane, uint8_t* observation) const {
+  const RunningEpisode& episode = lanes_[lane].episode;
+  world_->observe(episode.pair.env, episode.history, window_, observation);
 }
 
-GridStep Lanes::step(int number, int action) {
+WorldStep Lanes::step(int number, int action) {
   Lane& lane = lanes_[number];
-  const EnvTask pair = pairs_[lane.pair];
-  const GridStep step = grid_step(world_->maze(pair.env), world_->tasks()[pair.task], lane.state, action);
-  lane.history.push(lane.state.now);
+  const WorldStep step = lane.episode.step(*world_, action);
   lane.reward_cents += step.reward_cents;
   if (step.ended()) {
     ++finished_.episodes;
     finished_.successes += step.success;
-    finished_.wrong += step.wrong_pick;
+    finished_.wrong += step.wrong;
     finished_.reward_cents += lane.reward_cents;
-    finished_.length += lane.state.steps;
+    finished_.length += lane.episode.now().steps;
   }
   return step;
 }
 
 void Lanes::restart(int number) {
   Lane& lane = lanes_[number];
-  const int64_t episode = lane.episode + 1;
-  lane = {};
-  lane.episode = episode;
-  Random random(seed_, Purpose::kLane, uint64_t(number), uint64_t(episode));
+  ++lane.number;
+  lane.reward_cents = 0;
+  Random random(seed_, Purpose::kLane, uint64_t(number), uint64_t(lane.number));
   lane.pair = int(random.below(uint32_t(pairs_.size())));
-  lane.state = grid_reset(world_->maze(pairs_[lane.pair].env), random);
-  lane.history.push(lane.state.now);
+  const EnvTask pair = pairs_[lane.pair];
+  lane.episode.start(pair, world_->reset(pair.env, random));
 }
 
 Lanes::Finished Lanes::take_finished() { return std::exchange(finished_, {}); }
 
-std::vector<int64_t> Lanes::words() const {
-  std::vector<int64_t> words;
-  const auto add_frame = [&](const GridFrame& frame) {
-    words.push_back(frame.agent);
-    for (const uint8_t cell : frame.treasures) words.push_back(cell);
-  };
+void Lanes::save(SafeTensors& file, const std::string& prefix) const {
+  std::vector<uint8_t> episodes;
+  std::vector<int64_t> numbers, rewards;
   for (const Lane& lane : lanes_) {
-    words.insert(words.end(), {lane.pair, lane.episode, lane.state.picked, lane.state.steps, lane.history.count, lane.reward_cents});
-    add_frame(lane.state.now);
-    for (const GridFrame& frame : lane.history.frames) add_frame(frame);
+    lane.episode.save(episodes);
+    numbers.push_back(lane.number);
+    rewards.push_back(lane.reward_cents);
   }
-  return words;
+  file.add(prefix + "episodes", {int64_t(episodes.size())}, episodes.data(), episodes.size());
+  file.add(prefix + "numbers", {int64_t(numbers.size())}, numbers.data(), numbers.size());
+  file.add(prefix + "rewards", {int64_t(rewards.size())}, rewards.data(), rewards.size());
 }
 
-void Lanes::load(const std::vector<int64_t>& words) {
-  const auto bad = [] { fail(Exit::kData, "the running episodes in the checkpoint are malformed"); };
-  if (words.size() != lanes_.size() * kWords) bad();
-  const int64_t* at = words.data();
-  const auto take = [&](int64_t low, int64_t high) {
-    if (*at < low || *at > high) bad();
-    return *at++;
-  };
-  for (Lane& lane : lanes_) {
-    lane.pair = int(take(0, int64_t(pairs_.size()) - 1));
-    lane.episode = take(1, INT64_MAX - 1);
-    lane.state.picked = uint8_t(take(0, 1));
-    lane.state.steps = uint16_t(take(0, kGridStepLimit - 1));
-    lane.history.count = uint8_t(take(1, kHistory));
-    lane.reward_cents = take(INT32_MIN, INT32_MAX);
-    const auto take_frame = [&](GridFrame& frame) {
-      frame.agent = uint8_t(take(0, kGridCells - 1));
-      for (uint8_t& cell : frame.treasures) cell = uint8_t(take(0, 255));
-    };
-    take_frame(lane.state.now);
-    for (GridFrame& frame : lane.history.frames) take_frame(frame);
-    if (world_->maze(pairs_[lane.pair].env).wall[lane.state.now.agent]) bad();
+void Lanes::load(const SafeTensors& file, const std::string& prefix) {
+  const std::vector<uint8_t> episodes = file.get<uint8_t>(prefix + "episodes");
+  const std::vector<int64_t> numbers = file.get<int64_t>(prefix + "numbers"), rewards = file.get<int64_t>(prefix + "rewards");
+  const auto bad = [&] { fail(Exit::kData, "the running episodes in the checkpoint are malformed"); };
+  if (numbers.size() != lanes_.size() || rewards.size() != lanes_.size() || episodes.size() != lanes_.size() * RunningEpisode::kBytes) bad();
+  for (size_t i = 0; i < lanes_.size(); ++i) {
+    lanes_[i] = {0, {}, numbers[i], rewards[i]};
+    if (numbers[i] < 1 || numbers[i] == INT64_MAX || std::abs(rewards[i]) > INT32_MAX) bad();
+    if (!lanes_[i].episode.load(*world_, episodes.data() + i * RunningEpisode::kBytes)) bad();
+    const auto pair = std::find(pairs_.begin(), pairs_.end(), lanes_[i].episode.pair);
+    if (pair == pairs_.end()) bad();
+    lanes_[i].pair = int(pair - pairs_.begin());
   }
 }
 

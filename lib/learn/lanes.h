@@ -1,26 +1,27 @@
 // Episodes that run side by side under the learner's own actions.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
-#include "learn/episode.h"
-#include "world/view.h"
+#include "format/safetensors.h"
+#include "learn/running_episode.h"
 
 namespace synpo {
 
 class Lanes {
  public:
   // Episodes of these pairs, drawn at random, in `count` lanes.
-  Lanes(const GridSet& world, std::vector<EnvTask> pairs, int count, int window, uint64_t seed);
+  Lanes(const World& world, std::vector<EnvTask> pairs, int count, int window, uint64_t seed);
 
   int count() const { return int(lanes_.size()); }
   const std::vector<EnvTask>& pairs() const { return pairs_; }
   int pair(int lane) const { return lanes_[lane].pair; }  // position in pairs()
   // The network's input where the lane stands.
-  void draw(int lane, uint8_t* pictures) const;
+  void observe(int lane, uint8_t* observation) const;
 
   // One step. An episode that has ended stands at its last state until restart().
-  GridStep step(int lane, int action);
+  WorldStep step(int lane, int action);
   void restart(int lane);
 
   struct Finished {
@@ -29,20 +30,18 @@ class Lanes {
   // What has ended since the last call.
   Finished take_finished();
 
-  static constexpr int kWords = 6 + (1 + kHistory) * (1 + kTreasures);  // of a lane in words()
-  // All that a run needs to go on, and back; load throws kData for what no words() gave.
-  std::vector<int64_t> words() const;
-  void load(const std::vector<int64_t>& words);
+  // All that a run needs to go on; load() throws kData for what no save() wrote.
+  void save(SafeTensors& file, const std::string& prefix) const;
+  void load(const SafeTensors& file, const std::string& prefix);
 
  private:
   struct Lane {
     int pair = 0;
-    int64_t episode = 0;  // number of the episode in this lane
-    GridState state;
-    GridHistory history;
+    RunningEpisode episode;
+    int64_t number = 0;  // of the episode in this lane
     int64_t reward_cents = 0;
   };
-  const GridSet* world_;
+  const World* world_;
   std::vector<EnvTask> pairs_;
   int window_;
   uint64_t seed_;

@@ -6,7 +6,7 @@
 
 namespace synpo {
 
-void ReplayMemory::add(GridEpisode episode) {
+void ReplayMemory::add(Episode episode) {
   const size_t place = added_ % capacity_;
   if (place == episodes_.size()) {
     episodes_.emplace_back();
@@ -16,13 +16,13 @@ void ReplayMemory::add(GridEpisode episode) {
   serials_[place] = added_++;
 }
 
-// An episode is [env low, env high, task, agent, 5 treasures, steps low, steps high], then its actions and labels.
+// An episode is [env low, env high, task, the start's bytes, steps low, steps high], then its actions and labels.
 void ReplayMemory::save(SafeTensors& file, const std::string& prefix) const {
   std::vector<uint8_t> bytes;
-  for (const GridEpisode& e : episodes_) {
+  for (const Episode& e : episodes_) {
     const size_t steps = e.actions.size();
-    bytes.insert(bytes.end(), {uint8_t(e.pair.env), uint8_t(e.pair.env >> 8), uint8_t(e.pair.task), e.start.now.agent});
-    bytes.insert(bytes.end(), e.start.now.treasures.begin(), e.start.now.treasures.end());
+    bytes.insert(bytes.end(), {uint8_t(e.pair.env), uint8_t(e.pair.env >> 8), uint8_t(e.pair.task)});
+    bytes.insert(bytes.end(), e.start.bytes.begin(), e.start.bytes.end());
     bytes.insert(bytes.end(), {uint8_t(steps), uint8_t(steps >> 8)});
     bytes.insert(bytes.end(), e.actions.begin(), e.actions.end());
     bytes.insert(bytes.end(), e.labels.begin(), e.labels.end());
@@ -32,32 +32,28 @@ void ReplayMemory::save(SafeTensors& file, const std::string& prefix) const {
   file.add(prefix + "added", {1}, &added_, 1);
 }
 
-void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, const GridSet& world) {
+void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, const World& world) {
   const std::vector<uint8_t> bytes = file.get<uint8_t>(prefix + "episodes");
   serials_ = file.get<uint64_t>(prefix + "serials");
   file.get(prefix + "added", &added_, 1);
   episodes_.clear();
-  constexpr size_t kHead = 6 + kTreasures;
+  constexpr size_t kPair = 3, kStart = std::tuple_size_v<decltype(WorldState::bytes)>, kHead = kPair + kStart + 2;
   const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "episodes' is malformed"); };
   for (size_t at = 0; at < bytes.size();) {
     if (bytes.size() - at < kHead) bad();
     const uint8_t* head = bytes.data() + at;
-    GridEpisode e;
+    Episode e;
     e.pair = {head[0] | head[1] << 8, head[2]};
     if (e.pair.env >= world.envs() || e.pair.task >= world.task_count()) bad();
-    e.start.now.agent = head[3];
-    std::copy_n(head + 4, kTreasures, e.start.now.treasures.begin());
-    const auto floor = [&](uint8_t cell) { return !world.maze(e.pair.env).wall[cell]; };
-    if (!floor(e.start.now.agent)) bad();
-    for (const uint8_t cell : e.start.now.treasures)
-      if (!floor(cell)) bad();
-    const size_t steps = head[4 + kTreasures] | head[5 + kTreasures] << 8;
+    std::copy_n(head + kPair, kStart, e.start.bytes.begin());
+    if (!world.valid(e.pair, e.start)) bad();
+    const size_t steps = head[kPair + kStart] | head[kPair + kStart + 1] << 8;
     at += kHead;
-    if (steps < 1 || steps > kGridStepLimit || bytes.size() - at < 2 * steps) bad();
+    if (steps < 1 || steps > size_t(world.step_limit()) || bytes.size() - at < 2 * steps) bad();
     e.actions.assign(bytes.begin() + at, bytes.begin() + at + steps);
     e.labels.assign(bytes.begin() + at + steps, bytes.begin() + at + 2 * steps);
     for (size_t i = 0; i < 2 * steps; ++i)
-      if (bytes[at + i] >= kGridActions) bad();
+      if (bytes[at + i] >= world.actions()) bad();
     at += 2 * steps;
     episodes_.push_back(std::move(e));
   }

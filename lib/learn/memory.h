@@ -10,20 +10,20 @@ namespace synpo {
 class ReplayMemory {
  public:
   explicit ReplayMemory(size_t capacity) : capacity_(capacity) {}
-  void add(GridEpisode episode);
+  void add(Episode episode);
   size_t size() const { return episodes_.size(); }
-  const GridEpisode& operator[](size_t i) const { return episodes_[i]; }
+  const Episode& operator[](size_t i) const { return episodes_[i]; }
   // Number of the trajectory at position i, counted from the stream's first: it tells whether the place has been taken over since.
   uint64_t serial(size_t i) const { return serials_[i]; }
 
   void save(SafeTensors& file, const std::string& prefix) const;
   // Throws kData for what no save() wrote.
-  void load(const SafeTensors& file, const std::string& prefix, const GridSet& world);
+  void load(const SafeTensors& file, const std::string& prefix, const World& world);
 
  private:
   size_t capacity_;
   uint64_t added_ = 0;
-  std::vector<GridEpisode> episodes_;
+  std::vector<Episode> episodes_;
   std::vector<uint64_t> serials_;
 };
 

@@ -30,6 +30,15 @@ constexpr SizeName kSizes[] = {{"envs", &PolicyShape::envs},
                                {"action_embedding", &PolicyShape::action_embedding, 0, true},
                                {"head_hidden", &PolicyShape::head_hidden, 1, true},
                                {"seam", &PolicyShape::seam, 1, true}};
+struct ViewSizeName {
+  const char* name;
+  int TemporalSizes::*member;
+};
+constexpr ViewSizeName kViewSizes[] = {{"view", &TemporalSizes::view},
+                                       {"view_channels", &TemporalSizes::channels},
+                                       {"objects", &TemporalSizes::objects},
+                                       {"object_embedding", &TemporalSizes::object_embedding},
+                                       {"view_hidden", &TemporalSizes::hidden}};
 struct SwitchName {
   const char* name;
   bool PolicyShape::*member;
@@ -68,7 +77,10 @@ std::map<std::string, int64_t> describe_shape(const PolicyShape& shape) {
   for (const SizeName& size : kSizes) sizes[size.name] = shape.*size.member;
   sizes["sf_loss"] = int64_t(shape.sf_loss);
   for (const SwitchName& flag : kSwitches) sizes[flag.name] = shape.*flag.member;
-  for (size_t i = 0; i < shape.channels.size(); ++i) sizes["channels" + std::to_string(i + 1)] = shape.channels[i];
+  if (shape.sight == Sight::kFeatures)
+    for (const ViewSizeName& size : kViewSizes) sizes[size.name] = shape.views.*size.member;
+  else
+    for (size_t i = 0; i < shape.channels.size(); ++i) sizes["channels" + std::to_string(i + 1)] = shape.channels[i];
   return sizes;
 }
 
@@ -85,25 +97,37 @@ PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes) {
     if (!size.late || sizes.count(size.name)) shape.*size.member = get(size.name, size.low, kSizeLimit);
   if (sizes.count("sf_loss")) shape.sf_loss = SfLoss(get("sf_loss", 0, 2));
   for (const SwitchName& flag : kSwitches) shape.*flag.member = get(flag.name, 0, 1) != 0;
-  for (size_t i = 0; i < shape.channels.size(); ++i) shape.channels[i] = get("channels" + std::to_string(i + 1), 1, 4096);
+  if (sizes.count("view")) {
+    shape.sight = Sight::kFeatures;
+    for (const ViewSizeName& size : kViewSizes) shape.views.*size.member = get(size.name, 1, kSizeLimit);
+  } else {
+    for (size_t i = 0; i < shape.channels.size(); ++i) shape.channels[i] = get("channels" + std::to_string(i + 1), 1, 4096);
+  }
   return shape;
 }
 
 bool Model::is_seen(EnvTask pair) const { return std::find(seen.begin(), seen.end(), pair) != seen.end(); }
 
-GridSet world_of(const Checkpoint& checkpoint) {
-  if (checkpoint.world != "gridworld") fail(Exit::kData, "world ", quoted(checkpoint.world), ", this build has gridworld");
-  if (checkpoint.rules != kGridRules) fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", kGridRules);
-  std::vector<Maze> mazes;
-  for (const Checkpoint::Env& env : checkpoint.envs) {
-    mazes.push_back(parse_maze(env.name, env.content, "env " + quoted(env.name)));
-    if (mazes.back().hash != env.hash) fail(Exit::kData, "env ", quoted(env.name), ": content and hash differ");
-  }
-  GridSet world(std::move(mazes));
-  if (world.envs() == 0) fail(Exit::kData, "the checkpoint has no environment");
-  std::vector<std::string> tasks;
-  for (const Task& task : world.tasks()) tasks.push_back(task.name());
-  if (checkpoint.tasks != tasks) fail(Exit::kData, "the checkpoint's tasks are not this build's");
+Model fresh_model(const std::string& method, const PolicyShape& shape, const InitOptions& options) {
+  Model model;
+  model.method = method;
+  model.shape = shape;
+  model.seed = options.seed;
+  model.policy = make_policy(method, shape);
+  model.parameters.grow(model.policy->parameters().total());
+  model.statistics.grow(model.policy->statistics().total());
+  model.statistics.zero();
+  model.policy->initialise(options, model.parameters.data(), model.statistics.data());
+  return model;
+}
+
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint) {
+  if (checkpoint.envs.empty()) fail(Exit::kData, "the checkpoint has no environment");
+  std::vector<Environment> environments;
+  for (const Checkpoint::Env& env : checkpoint.envs) environments.push_back({env.name, env.hash, env.content});
+  std::unique_ptr<World> world = restore_world(checkpoint.world, environments);
+  if (checkpoint.rules != world->rules()) fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", world->rules());
+  if (checkpoint.tasks != world->task_names()) fail(Exit::kData, "the checkpoint's tasks are not this build's");
   return world;
 }
 
@@ -121,11 +145,11 @@ void get_tensors(const SafeTensors& file, const std::string& prefix, const Layou
   }
 }
 
-Model load_model(const Checkpoint& checkpoint, const GridSet& world) {
+Model load_model(const Checkpoint& checkpoint, const World& world) {
   Model model;
   model.method = checkpoint.method;
   model.shape = parse_shape(checkpoint.shape);
-  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != kGridActions)
+  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != world.actions() || model.shape.sight != world.sight())
     fail(Exit::kData, "the network's shape does not fit the world");
   model.window = checkpoint.window;
   model.seed = checkpoint.seed;
@@ -140,14 +164,15 @@ Model load_model(const Checkpoint& checkpoint, const GridSet& world) {
   return model;
 }
 
-Checkpoint describe_model(const Model& model, const GridSet& world) {
+Checkpoint describe_model(const Model& model, const World& world) {
   Checkpoint c;
   c.method = model.method;
-  c.rules = kGridRules;
+  c.world = world.name();
+  c.rules = world.rules();
   c.window = model.window;
-  for (const Maze& maze : world.mazes()) c.envs.push_back({maze.name, maze.hash, maze.canonical_text()});
-  for (const Task& task : world.tasks()) c.tasks.push_back(task.name());
-  for (const EnvTask& pair : model.seen) c.seen.emplace_back(world.maze(pair.env).name, world.tasks()[pair.task].name());
+  for (const Environment& env : world.environments()) c.envs.push_back({env.name, env.hash, env.content});
+  c.tasks = world.task_names();
+  for (const EnvTask& pair : model.seen) c.seen.emplace_back(world.environments()[pair.env].name, world.task_names()[pair.task]);
   c.shape = describe_shape(model.shape);
   c.updates = model.updates;
   c.states = model.states;

@@ -8,7 +8,7 @@
 #include "learn/episode.h"
 #include "nn/buffer.h"
 #include "policy/policy.h"
-#include "world/grid_set.h"
+#include "world/world.h"
 
 namespace synpo {
 
@@ -35,15 +35,18 @@ struct Model {
   bool is_seen(EnvTask pair) const;
 };
 
+// Fresh weights; the window is 1 and no pair is seen.
+Model fresh_model(const std::string& method, const PolicyShape& shape, const InitOptions& options);
+
 // The world in the checkpoint, and the model. Throws kData when tensors or world don't fit this build.
-GridSet world_of(const Checkpoint& checkpoint);
-Model load_model(const Checkpoint& checkpoint, const GridSet& world);
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint);
+Model load_model(const Checkpoint& checkpoint, const World& world);
 
 // Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back.
 void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values);
 void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values);
 
 // Everything but the tensors.
-Checkpoint describe_model(const Model& model, const GridSet& world);
+Checkpoint describe_model(const Model& model, const World& world);
 
 }  // namespace synpo

@@ -9,7 +9,6 @@
 namespace synpo {
 namespace {
 
-constexpr size_t kPicture = size_t(kGridCells) * kHistory;
 constexpr int kLook = 8;  // lanes that a thread looks at together
 
 // p and log p of softmax(scores); returns the entropy.
@@ -72,10 +71,11 @@ class Ppo::ClippedObjective : public Objective<float> {
     std::vector<float> x(size_t(n) * in);
     result = {};
     result.largest_ratio = result.smallest_ratio = 1;
+    const int actions = ppo_.world_.actions();
+    std::vector<double> p(actions), log_p(actions);
     for (int i = 0; i < n; ++i) {
       const int row = rows_[i], a = rollout.action[row];
-      double p[kGridActions], log_p[kGridActions];
-      const double entropy = softmax(logits + size_t(i) * kGridActions, kGridActions, p, log_p);
+      const double entropy = softmax(logits + size_t(i) * actions, actions, p.data(), log_p.data());
       const double log_ratio = log_p[a] - rollout.log_probability[row], ratio = std::exp(log_ratio), advantage = rollout.advantage[row];
       const double clipped = std::clamp(ratio, 1 - options.clip, 1 + options.clip);
       const bool limited = clipped * advantage < ratio * advantage;
@@ -85,9 +85,9 @@ class Ppo::ClippedObjective : public Objective<float> {
       result.clip_fraction += double(ratio != clipped) / n;
       result.largest_ratio = std::max(result.largest_ratio, ratio);
       result.smallest_ratio = std::min(result.smallest_ratio, ratio);
-      for (int j = 0; j < kGridActions; ++j) {
+      for (int j = 0; j < actions; ++j) {
         const double along = limited ? 0 : -advantage * ratio * ((j == a) - p[j]);
-        dlogits[size_t(i) * kGridActions + j] = float((along + options.entropy * p[j] * (log_p[j] + entropy)) / n);
+        dlogits[size_t(i) * actions + j] = float((along + options.entropy * p[j] * (log_p[j] + entropy)) / n);
       }
       ppo_.make_value_input(psi + size_t(i) * d, rollout.env[row], rollout.task[row], x.data() + size_t(i) * in);
     }
@@ -112,7 +112,7 @@ class Ppo::ClippedObjective : public Objective<float> {
   const std::vector<int>& rows_;
 };
 
-Ppo::Ppo(const GridSet& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed)
+Ppo::Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed)
     : world_(world), parallel_(parallel), options_(options), seed_(seed), model_(std::move(model)),
       lanes_(world, model_.seen, options.lanes, model_.window, seed) {
   if (size() % options_.minibatches != 0) fail(Exit::kUsage, size(), " steps of a rollout cannot be cut into ", options_.minibatches, " minibatches");
@@ -151,40 +151,41 @@ void Ppo::make_value_input(const float* psi, int env, int task, float* x) const 
 }
 
 void Ppo::measure_statistics(int batches) {
+  const int actions = world_.actions();
   std::vector<float> logits;
   for (int batch = 0; batch < batches; ++batch) {
     const int n = 512;
-    std::vector<uint8_t> pictures(n * kPicture);
+    std::vector<uint8_t> observations(n * world_.observation_size());
     std::vector<int> env(n), task(n), action(n);
     const std::vector<float> reward(n, 0);
     Random random(seed_, Purpose::kNoise, 0, uint64_t(batch));
     for (int i = 0; i < n; ++i) {
       const int lane = i % lanes_.count();
-      lanes_.draw(lane, pictures.data() + i * kPicture);
+      lanes_.observe(lane, observations.data() + i * world_.observation_size());
       env[i] = lanes_.pairs()[lanes_.pair(lane)].env;
       task[i] = lanes_.pairs()[lanes_.pair(lane)].task;
-      action[i] = int(random.below(kGridActions));
+      action[i] = int(random.below(uint32_t(actions)));
       if (lanes_.step(lane, action[i]).ended()) lanes_.restart(lane);
     }
-    logits.resize(size_t(n) * kGridActions);
-    StepBatch<float> steps = {n, pictures.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+    logits.resize(size_t(n) * actions);
+    StepBatch<float> steps = {n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
     model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(), logits.data());
   }
   lanes_.take_finished();
 }
 
-void Ppo::look(const std::vector<int>& lanes, uint8_t* pictures, float* logits, float* psi, float* values) {
-  const int n = int(lanes.size()), d = model_.shape.feature, in = value_inputs();
+void Ppo::look(const std::vector<int>& lanes, uint8_t* observations, float* logits, float* psi, float* values) {
+  const int n = int(lanes.size()), d = model_.shape.feature, in = value_inputs(), actions = world_.actions();
   parallel_.run(shard_count(n, kLook), [&](int shard, int thread) {
     const Range range = shard_range(n, kLook, shard);
     int pair[kLook];
     std::vector<float> x(size_t(range.size()) * in);
     Buffer<float> scratch;
     for (int i = range.begin; i < range.end; ++i) {
-      lanes_.draw(lanes[i], pictures + i * kPicture);
+      lanes_.observe(lanes[i], observations + i * world_.observation_size());
       pair[i - range.begin] = lanes_.pair(lanes[i]);
     }
-    model_.policy->infer(thread, range.size(), pictures + range.begin * kPicture, pair, logits + size_t(range.begin) * kGridActions,
+    model_.policy->infer(thread, range.size(), observations + range.begin * world_.observation_size(), pair, logits + size_t(range.begin) * actions,
                          psi + size_t(range.begin) * d);
     for (int i = range.begin; i < range.end; ++i) {
       const EnvTask at = lanes_.pairs()[lanes_.pair(lanes[i])];
@@ -197,7 +198,7 @@ void Ppo::look(const std::vector<int>& lanes, uint8_t* pictures, float* logits, 
 void Ppo::collect() {
   const int lanes = options_.lanes, d = model_.shape.feature;
   Rollout& r = rollout_;
-  r.pictures.resize(size() * kPicture);
+  r.observations.resize(size() * world_.observation_size());
   for (std::vector<int>* values : {&r.env, &r.task, &r.action}) values->resize(size());
   for (std::vector<float>* values : {&r.log_probability, &r.reward, &r.value, &r.cut_value}) values->assign(size(), 0);
   r.last_value.resize(lanes);
@@ -207,25 +208,26 @@ void Ppo::collect() {
   model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), pairs);
   value_->prepare_inference(value_parameters_.data());
 
+  const int actions = world_.actions();
+  std::vector<double> p(actions), log_p(actions);
   std::vector<int> all(lanes);
   std::iota(all.begin(), all.end(), 0);
-  std::vector<float> logits(size_t(lanes) * kGridActions), psi(size_t(lanes) * d);
-  std::vector<uint8_t> spare(lanes * kPicture);
+  std::vector<float> logits(size_t(lanes) * actions), psi(size_t(lanes) * d);
+  std::vector<uint8_t> spare(lanes * world_.observation_size());
   for (int t = 0; t < options_.rollout; ++t) {
     const size_t first = size_t(t) * lanes;
-    look(all, r.pictures.data() + first * kPicture, logits.data(), psi.data(), r.value.data() + first);
+    look(all, r.observations.data() + first * world_.observation_size(), logits.data(), psi.data(), r.value.data() + first);
     std::vector<int> cut;
     for (int lane = 0; lane < lanes; ++lane) {
       const size_t at = first + lane;
       const EnvTask pair = lanes_.pairs()[lanes_.pair(lane)];
-      double p[kGridActions], log_p[kGridActions];
-      softmax(logits.data() + size_t(lane) * kGridActions, kGridActions, p, log_p);
-      const int action = draw_action(p, kGridActions, Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
+      softmax(logits.data() + size_t(lane) * actions, actions, p.data(), log_p.data());
+      const int action = draw_action(p.data(), actions, Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
       r.env[at] = pair.env;
       r.task[at] = pair.task;
       r.action[at] = action;
       r.log_probability[at] = float(log_p[action]);
-      const GridStep step = lanes_.step(lane, action);
+      const WorldStep step = lanes_.step(lane, action);
       r.reward[at] = float(step.reward_cents) / 100;
       if (step.terminated) lanes_.restart(lane);
       if (step.truncated) cut.push_back(lane);
@@ -260,19 +262,19 @@ void Ppo::collect() {
 }
 
 void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
-  const int n = int(rows.size());
-  std::vector<uint8_t> pictures(n * kPicture);
+  const int n = int(rows.size()), actions = world_.actions();
+  std::vector<uint8_t> observations(n * world_.observation_size());
   std::vector<int> env(n), task(n), action(n);
-  std::vector<float> reward(n), logits(size_t(n) * kGridActions);
+  std::vector<float> reward(n), logits(size_t(n) * actions);
   for (int i = 0; i < n; ++i) {
-    std::copy_n(rollout_.pictures.data() + rows[i] * kPicture, kPicture, pictures.data() + i * kPicture);
+    std::copy_n(rollout_.observations.data() + rows[i] * world_.observation_size(), world_.observation_size(), observations.data() + i * world_.observation_size());
     env[i] = rollout_.env[rows[i]];
     task[i] = rollout_.task[rows[i]];
     action[i] = rollout_.action[rows[i]];
     reward[i] = rollout_.reward[rows[i]];
   }
   ClippedObjective objective(*this, rows);
-  StepBatch<float> batch = {n, pictures.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+  StepBatch<float> batch = {n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
   batch.frozen_statistics = true;
   batch.objective = &objective;
   const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
@@ -338,8 +340,7 @@ Checkpoint Ppo::checkpoint(bool with_training_state) const {
   add_tensors(c.file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   add_tensors(c.file, "train/ppo/", value_layout_, value_parameters_.data());
   add_tensors(c.file, "train/ppo/value/v/", value_layout_, value_v_.data());
-  const std::vector<int64_t> words = lanes_.words();
-  c.file.add("train/ppo/lanes", {int64_t(words.size())}, words.data(), words.size());
+  lanes_.save(c.file, "train/ppo/lanes/");
   const int64_t position[3] = {updates_, steps_, int64_t(seed_)};
   c.file.add("train/ppo/position", {3}, position, 3);
   return c;
@@ -356,7 +357,7 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());
   get_tensors(file, "train/ppo/value/v/", value_layout_, value_v_.data());
-  lanes_.load(file.get<int64_t>("train/ppo/lanes"));
+  lanes_.load(file, "train/ppo/lanes/");
   int64_t position[3];
   file.get("train/ppo/position", position, 3);
   if (position[0] < 0 || position[1] < 0) fail(Exit::kData, "tensor 'train/ppo/position' is malformed");

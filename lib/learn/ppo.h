@@ -41,7 +41,7 @@ struct PpoReport {
 class Ppo {
  public:
   // Fine-tunes `model` on its seen pairs. Throws kUsage for sizes that do not divide.
-  Ppo(const GridSet& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed);
+  Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed);
   // Takes up a run where checkpoint() left it. Throws kData for a checkpoint that is none of such a run.
   void resume(const Checkpoint& checkpoint);
 
@@ -66,7 +66,7 @@ class Ppo {
  private:
   class ClippedObjective;
   struct Rollout {
-    std::vector<uint8_t> pictures;
+    std::vector<uint8_t> observations;
     std::vector<int> env, task, action;
     std::vector<float> log_probability, reward, value, cut_value, last_value, advantage, target;
     std::vector<StepEnd> end;
@@ -75,11 +75,11 @@ class Ppo {
   int value_inputs() const;
   void make_value_input(const float* psi, int env, int task, float* x) const;
   // Scores, psi and values of the states in these lanes.
-  void look(const std::vector<int>& lanes, uint8_t* pictures, float* logits, float* psi, float* values);
+  void look(const std::vector<int>& lanes, uint8_t* observations, float* logits, float* psi, float* values);
   void collect();
   void learn_minibatch(const std::vector<int>& rows, bool value_alone);
 
-  const GridSet& world_;
+  const World& world_;
   Parallel& parallel_;
   PpoOptions options_;
   uint64_t seed_;

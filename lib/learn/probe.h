@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
-#include "learn/episode.h"
 #include "policy/policy.h"
+#include "world/grid_set.h"
 
 namespace synpo {
 

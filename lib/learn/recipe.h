@@ -35,7 +35,7 @@ struct ImitationOptions {
   double done(int64_t update, int64_t total) const;
   // As they are at that update.
   RunningOptions running_options(int64_t update, int64_t total) const;
-  PolicyShape shape(const GridSet& world) const;
+  PolicyShape shape(const World& world) const;
   AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay}; }
   // Learning rate of update `update` (from 0) of `total`: linear warm-up, then constant or half a cosine down to final_rate.
   double rate(int64_t update, int64_t total) const;

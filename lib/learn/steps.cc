@@ -1,7 +1,6 @@
 #include "learn/steps.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/error.h"
 
@@ -9,25 +8,20 @@ namespace synpo {
 namespace {
 
 constexpr int kUnit = 32;  // samples of a shard
-constexpr size_t kPicture = size_t(kGridCells) * kHistory;
 constexpr uint64_t kRestartStream = uint64_t{1} << 32;  // keeps restarts and updates apart among the numbers of Purpose::kRollIn
 
-void put_planner_q(const GridSet& world, EnvTask pair, const GridState& state, int at, Minibatch& batch) {
+void put_planner_q(const World& world, EnvTask pair, const WorldState& state, int at, Minibatch& batch) {
   if (!batch.needs.planner_q) return;
-  const std::array<int, kGridActions> cents = world.planner(pair.env).q_cents(world.tasks()[pair.task], state);
-  for (int a = 0; a < kGridActions; ++a) batch.planner_q[size_t(at) * kGridActions + a] = float(cents[a]) / 100;
+  const int actions = world.actions();
+  std::vector<int> cents(actions);
+  world.action_values(pair, state, cents.data());
+  for (int a = 0; a < actions; ++a) batch.planner_q[size_t(at) * actions + a] = float(cents[a]) / 100;
 }
 
 }  // namespace
 
-StepKind step_kind(const GridState& state, int label) {
-  if (state.steps == 0) return StepKind::kStart;
-  if (label == kPick) return StepKind::kPick;
-  return treasure_under_agent(state.now) >= 0 ? StepKind::kWalkOn : StepKind::kMove;
-}
-
-void Minibatch::resize(int size) {
-  pictures.resize(size * kPicture);
+void Minibatch::resize(const World& world, int size) {
+  observations.resize(size * world.observation_size());
   env.resize(size);
   task.resize(size);
   label.resize(size);
@@ -35,36 +29,33 @@ void Minibatch::resize(int size) {
   reward.resize(size);
   kind.resize(size);
   next.assign(needs.next ? size : 0, StepBatch<float>::kUnknown);
-  planner_q.resize(needs.planner_q ? size_t(size) * kGridActions : 0);
+  planner_q.resize(needs.planner_q ? size_t(size) * world.actions() : 0);
 }
 
-void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,
+void TrajectoryDraw::draw(const World& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,
                           int64_t update, Minibatch& batch) {
   Random random(seed, Purpose::kBatch, 0, uint64_t(update));
-  std::vector<const GridEpisode*> episodes(count);
+  std::vector<const Episode*> episodes(count);
   std::vector<int> first(count + 1, 0);
   for (int i = 0; i < count; ++i) {
     episodes[i] = &memory[random.below(uint32_t(memory.size()))];
     first[i + 1] = first[i] + int(episodes[i]->actions.size());
   }
-  batch.resize(first[count]);
+  batch.resize(world, first[count]);
   parallel.run(count, [&](int i, int) {
-    const GridEpisode& episode = *episodes[i];
-    const Maze& maze = world.maze(episode.pair.env);
-    const Task& task = world.tasks()[episode.pair.task];
-    GridState state = episode.start;
-    GridHistory history;
+    const Episode& episode = *episodes[i];
+    RunningEpisode running;
+    running.start(episode.pair, episode.start);
     for (size_t t = 0; t < episode.actions.size(); ++t) {
       const size_t at = first[i] + t;
-      history.push(state.now);
-      draw_history(maze, history, window, batch.pictures.data() + at * kPicture);
+      world.observe(episode.pair.env, running.history, window, batch.observations.data() + at * world.observation_size());
       batch.env[at] = episode.pair.env;
       batch.task[at] = episode.pair.task;
       batch.label[at] = episode.labels[t];
       batch.taken[at] = episode.actions[t];
-      batch.kind[at] = step_kind(state, episode.labels[t]);
-      put_planner_q(world, episode.pair, state, int(at), batch);
-      const GridStep step = grid_step(maze, task, state, episode.actions[t]);
+      batch.kind[at] = world.kind(episode.pair, running.now(), episode.labels[t]);
+      put_planner_q(world, episode.pair, running.now(), int(at), batch);
+      const WorldStep step = running.step(world, episode.actions[t]);
       batch.reward[at] = float(step.reward_cents) / 100;
       if (!batch.needs.next) continue;
       if (step.terminated)
@@ -78,54 +69,53 @@ void TrajectoryDraw::draw(const GridSet& world, const ReplayMemory& memory, Para
 void RunningDraw::restart(const ReplayMemory& memory, Running& running, uint32_t number) {
   Random random(seed_, Purpose::kRollIn, number, kRestartStream + running.restarts);
   const uint32_t place = random.below(uint32_t(memory.size()));
-  const GridEpisode& episode = memory[place];
+  const Episode& episode = memory[place];
   const uint32_t restarts = running.restarts + 1;
-  running = {episode.pair, episode.start, {}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started};
-  if (options_.fresh_starts) running.state = grid_reset(world_->maze(episode.pair.env), random);
-  running.history.push(running.state.now);
+  running = {{}, memory.serial(place), place, restarts, !options_.fresh_starts, running.started};
+  running.episode.start(episode.pair, options_.fresh_starts ? world_->reset(episode.pair.env, random) : episode.start);
 }
 
-const GridEpisode* RunningDraw::followed(const ReplayMemory& memory, const Running& running) {
+const Episode* RunningDraw::followed(const ReplayMemory& memory, const Running& running) {
   if (!running.following || memory.serial(running.place) != running.serial) return nullptr;
-  const GridEpisode& episode = memory[running.place];
+  const Episode& episode = memory[running.place];
   // A recorded trajectory may break off before its episode ends.
-  return running.state.steps < episode.actions.size() ? &episode : nullptr;
+  return running.episode.now().steps < episode.actions.size() ? &episode : nullptr;
 }
 
 void RunningDraw::label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const {
-  if (const GridEpisode* episode = followed(memory, running)) {
-    label = episode->labels[running.state.steps];
-    move = episode->actions[running.state.steps];
+  if (const Episode* episode = followed(memory, running)) {
+    label = episode->labels[running.episode.now().steps];
+    move = episode->actions[running.episode.now().steps];
   } else {
-    label = move = world_->planner(running.pair.env).action(world_->tasks()[running.pair.task], running.state);
+    label = move = world_->expert(running.episode.pair, running.episode.now());
   }
 }
 
-GridStep RunningDraw::move_on(const ReplayMemory& memory, Running& running, int action) const {
-  const GridEpisode* episode = followed(memory, running);
-  running.following = episode && episode->actions[running.state.steps] == action;
-  const GridStep step = grid_step(world_->maze(running.pair.env), world_->tasks()[running.pair.task], running.state, action);
-  running.history.push(running.state.now);
-  return step;
+WorldStep RunningDraw::move_on(const ReplayMemory& memory, Running& running, int action) const {
+  const Episode* episode = followed(memory, running);
+  running.following = episode && episode->actions[running.episode.now().steps] == action;
+  return running.episode.step(*world_, action);
 }
 
 void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
-  if (move_on(memory, running, action).ended() || running.state.steps >= options_.step_limit) restart(memory, running, number);
+  if (move_on(memory, running, action).ended() || running.episode.now().steps >= options_.step_limit) restart(memory, running, number);
 }
 
 // The step that takes `action` where the episode stands.
-GridStep RunningDraw::put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const {
+WorldStep RunningDraw::put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const {
   Running after = running;
-  const GridStep step = move_on(memory, after, action);
+  const WorldStep step = move_on(memory, after, action);
   int move;
   label_and_move(memory, running, batch.label[at], move);
-  batch.env[at] = running.pair.env;
-  batch.task[at] = running.pair.task;
+  const EnvTask pair = running.episode.pair;
+  const WorldState& state = running.episode.now();
+  batch.env[at] = pair.env;
+  batch.task[at] = pair.task;
   batch.taken[at] = action;
   batch.reward[at] = float(step.reward_cents) / 100;
-  batch.kind[at] = step_kind(running.state, batch.label[at]);
-  put_planner_q(*world_, running.pair, running.state, at, batch);
-  draw_history(world_->maze(running.pair.env), running.history, window, batch.pictures.data() + size_t(at) * kPicture);
+  batch.kind[at] = world_->kind(pair, state, batch.label[at]);
+  put_planner_q(*world_, pair, state, at, batch);
+  world_->observe(pair.env, running.episode.history, window, batch.observations.data() + size_t(at) * world_->observation_size());
   return step;
 }
 
@@ -133,7 +123,7 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
   if (batch.needs.next) count = (count + 1) / 2;
   // Never fewer than a minibatch takes: an episode is drawn once.
   if (running_.size() < size_t(count)) running_.resize(std::max(options_.episodes, count), Running{});
-  batch.resize(batch.needs.next ? 2 * count : count);
+  batch.resize(*world_, batch.needs.next ? 2 * count : count);
   drawn_.resize(count);
   moves_.resize(count);
   for (int i = 0; i < count; ++i) {
@@ -158,12 +148,12 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
       }
       while (true) {
         label_and_move(memory, running, label, move);
-        if (options_.noise > 0 && random.uniform() < options_.noise) move = int(random.below(kPick));
-        if (treasure_under_agent(running.state.now) >= 0 || random.uniform() < options_.balance) break;
+        if (options_.noise > 0 && random.uniform() < options_.noise) move = int(random.below(uint32_t(world_->moves())));
+        if (world_->at_choice(running.episode.pair, running.episode.now()) || random.uniform() < options_.balance) break;
         step(memory, running, number, move);
       }
       moves_[i] = move;
-      const GridStep step = put(memory, running, move, window, i, batch);
+      const WorldStep step = put(memory, running, move, window, i, batch);
       if (!batch.needs.next) continue;
       // A last step stands twice, the second time with none behind it.
       const int behind = count + i;
@@ -186,59 +176,45 @@ void RunningDraw::advance(const ReplayMemory& memory, const std::vector<int>& gr
 }
 
 void RunningDraw::save(SafeTensors& file, const std::string& prefix) const {
-  static_assert(std::is_trivially_copyable_v<Running>);
-  // Field by field, so that padding never reaches the file.
+  std::vector<uint8_t> episodes;
   std::vector<int64_t> words;
   for (const Running& r : running_) {
-    words.insert(words.end(), {r.pair.env, r.pair.task, r.state.picked, r.state.steps, int64_t(r.serial), r.place, r.restarts, r.following,
-                               r.started, r.history.count});
-    const auto add_frame = [&](const GridFrame& frame) {
-      words.push_back(frame.agent);
-      for (const uint8_t cell : frame.treasures) words.push_back(cell);
-    };
-    add_frame(r.state.now);
-    for (const GridFrame& frame : r.history.frames) add_frame(frame);
+    r.episode.save(episodes);
+    words.insert(words.end(), {int64_t(r.serial), r.place, r.restarts, r.following, r.started});
   }
+  file.add(prefix + "episodes", {int64_t(episodes.size())}, episodes.data(), episodes.size());
   file.add(prefix + "running", {int64_t(words.size())}, words.data(), words.size());
   const int64_t next = int64_t(next_);
   file.add(prefix + "next", {1}, &next, 1);
 }
 
 void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const ReplayMemory& memory) {
-  constexpr size_t kWords = 10 + (1 + kHistory) * (1 + kTreasures);
+  constexpr size_t kWords = 5, kBytes = RunningEpisode::kBytes;
+  const std::vector<uint8_t> episodes = file.get<uint8_t>(prefix + "episodes");
   const std::vector<int64_t> words = file.get<int64_t>(prefix + "running");
   int64_t next = 0;
   file.get(prefix + "next", &next, 1);
   const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "running' is malformed"); };
-  if (words.size() % kWords != 0 || (!words.empty() && words.size() / kWords < size_t(options_.episodes))) bad();
-  running_.assign(words.size() / kWords, Running{});
-  if (next < 0 || (next > 0 && size_t(next) >= running_.size())) bad();
+  const size_t count = words.size() / kWords;
+  if (words.size() % kWords != 0 || (count > 0 && count < size_t(options_.episodes)) || episodes.size() != count * kBytes) bad();
+  running_.assign(count, Running{});
+  if (next < 0 || (next > 0 && size_t(next) >= count)) bad();
   next_ = size_t(next);
   const int64_t* at = words.data();
-  const auto take = [&](int64_t low, int64_t high) {
-    if (*at < low || *at > high) bad();
+  const auto take = [&](int64_t high) {
+    if (*at < 0 || *at > high) bad();
     return *at++;
   };
-  for (Running& r : running_) {
-    r.pair.env = int(take(0, world_->envs() - 1));
-    r.pair.task = int(take(0, world_->task_count() - 1));
-    r.state.picked = uint8_t(take(0, 1));
-    r.state.steps = uint16_t(take(0, kGridStepLimit - 1));
-    r.serial = uint64_t(take(0, INT64_MAX));
-    r.place = uint32_t(take(0, UINT32_MAX));
-    r.restarts = uint32_t(take(0, UINT32_MAX));
-    r.following = take(0, 1) != 0;
-    r.started = take(0, 1) != 0;
-    r.history.count = uint8_t(take(0, kHistory));
-    const auto take_frame = [&](GridFrame& frame) {
-      frame.agent = uint8_t(take(0, 255));
-      for (uint8_t& cell : frame.treasures) cell = uint8_t(take(0, 255));
-    };
-    take_frame(r.state.now);
-    for (GridFrame& frame : r.history.frames) take_frame(frame);
+  for (size_t i = 0; i < count; ++i) {
+    Running& r = running_[i];
+    r.serial = uint64_t(take(INT64_MAX));
+    r.place = uint32_t(take(UINT32_MAX));
+    r.restarts = uint32_t(take(UINT32_MAX));
+    r.following = take(1) != 0;
+    r.started = take(1) != 0;
     if (!r.started) continue;
-    if (r.place >= memory.size() || world_->maze(r.pair.env).wall[r.state.now.agent]) bad();
-    if (r.following && memory.serial(r.place) == r.serial && r.state.steps >= memory[r.place].actions.size()) bad();
+    if (r.place >= memory.size() || !r.episode.load(*world_, episodes.data() + i * kBytes)) bad();
+    if (r.following && memory.serial(r.place) == r.serial && r.episode.now().steps >= memory[r.place].actions.size()) bad();
   }
 }
 

@@ -3,7 +3,7 @@
 // TrajectoryDraw is Algorithm 1: whole trajectories, uniformly, all their steps.
 // RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn; one starts as
 // a trajectory of the memory and follows it, or is driven off it by random moves and the learner's own greedy moves, where the
-// planner then gives the label. Steps on which the agent stands on a treasure are always taken, others with a probability.
+// planner then gives the label. Steps on which something could be taken (World::at_choice) are always taken, others with a probability.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -11,18 +11,13 @@
 #include "base/parallel.h"
 #include "learn/memory.h"
 #include "policy/policy.h"
-#include "world/view.h"
+#include "learn/running_episode.h"
 
 namespace synpo {
 
-// By what a step asks of the policy: the first of an episode; to pick; to walk on over a treasure; to move.
-enum class StepKind : uint8_t { kMove, kPick, kWalkOn, kStart };
-constexpr int kStepKinds = 4;
-StepKind step_kind(const GridState& state, int label);
-
 // A minibatch under construction; arrays grow as needed. Set `needs` before a draw.
 struct Minibatch {
-  std::vector<uint8_t> pictures;  // [size, 16, 16, history]
+  std::vector<uint8_t> observations;  // [size, World::observation_size()]
   std::vector<int> env, task, label, taken;
   std::vector<float> reward;
   std::vector<StepKind> kind;
@@ -31,28 +26,28 @@ struct Minibatch {
   std::vector<int> next;
   std::vector<float> planner_q;
   int size() const { return int(env.size()); }
-  void resize(int size);
+  void resize(const World& world, int size);
 };
 
 class TrajectoryDraw {
  public:
   // `count` trajectories with all their steps; update `update` of a run with this seed always draws the same.
-  static void draw(const GridSet& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed, int64_t update,
+  static void draw(const World& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed, int64_t update,
                    Minibatch& batch);
 };
 
 struct RunningOptions {
   int episodes = 8192;      // that run side by side
-  double balance = 1;       // probability of taking a step that is not on a treasure
+  double balance = 1;       // probability of taking a step on which nothing could be taken
   double roll_in = 0;       // probability of the learner's own greedy move behind a taken step
   double noise = 0;         // probability of a random move otherwise
-  bool fresh_starts = false;  // agent and treasures are placed anew; the memory then gives the pair alone
-  int step_limit = kGridStepLimit;
+  bool fresh_starts = false;  // agent and things are placed anew; the memory then gives the pair alone
+  int step_limit = 300;
 };
 
 class RunningDraw {
  public:
-  RunningDraw(const GridSet& world, const RunningOptions& options, uint64_t seed) : world_(&world), options_(options), seed_(seed) {}
+  RunningDraw(const World& world, const RunningOptions& options, uint64_t seed) : world_(&world), options_(options), seed_(seed) {}
 
   // Takes over probabilities; the number of episodes stays.
   void set_options(const RunningOptions& options) { options_ = options; }
@@ -68,25 +63,23 @@ class RunningDraw {
 
  private:
   struct Running {
-    EnvTask pair;
-    GridState state;
-    GridHistory history;
+    RunningEpisode episode;
     uint64_t serial;   // of the trajectory that is followed
     uint32_t place;    // in the memory
     uint32_t restarts;
     bool following;    // actions so far are the trajectory's
     bool started;
   };
-  GridStep put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const;
+  WorldStep put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const;
   void restart(const ReplayMemory& memory, Running& running, uint32_t number);
   // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.
-  static const GridEpisode* followed(const ReplayMemory& memory, const Running& running);
+  static const Episode* followed(const ReplayMemory& memory, const Running& running);
   void label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const;
-  GridStep move_on(const ReplayMemory& memory, Running& running, int action) const;
+  WorldStep move_on(const ReplayMemory& memory, Running& running, int action) const;
   // One step; restarts where the episode ends.
   void step(const ReplayMemory& memory, Running& running, uint32_t number, int action);
 
-  const GridSet* world_;
+  const World* world_;
   RunningOptions options_;
   uint64_t seed_;
   std::vector<Running> running_;

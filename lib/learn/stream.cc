@@ -4,20 +4,20 @@
 
 namespace synpo {
 
-TrajectoryStream::TrajectoryStream(Input& input, const GridSet& world, std::vector<EnvTask> seen, int window)
+TrajectoryStream::TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window)
     : input_(input), world_(world), seen_(std::move(seen)), allowed_(size_t(world.envs()) * world.task_count(), seen_.empty()), window_(window) {
-  for (const EnvTask& pair : seen_) allowed_[world.pair_number(pair.env, pair.task)] = true;
+  for (const EnvTask& pair : seen_) allowed_[world.pair_number(pair)] = true;
 }
 
-std::optional<GridEpisode> TrajectoryStream::next() {
+std::optional<Episode> TrajectoryStream::next() {
   if (ended_ || !input_.line(line_)) {
     ended_ = true;
     return std::nullopt;
   }
   try {
-    const Trajectory trajectory = parse_trajectory(line_, kGridActions, kGridStepLimit);
-    GridEpisode episode = replay(world_, trajectory);
-    if (!allowed_[world_.pair_number(episode.pair.env, episode.pair.task)])
+    const Trajectory trajectory = parse_trajectory(line_, world_.actions(), world_.step_limit());
+    Episode episode = replay(world_, trajectory);
+    if (!allowed_[world_.pair_number(episode.pair)])
       fail(Exit::kData, "pair ", trajectory.env, ", ", trajectory.task, " is not in the seen set");
     if (window_ < 0) window_ = trajectory.window;
     if (trajectory.window != window_) fail(Exit::kData, "window ", trajectory.window, ", expected ", window_, " as in the trajectories before");

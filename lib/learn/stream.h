@@ -14,10 +14,10 @@ class TrajectoryStream {
  public:
   // Trajectories of pairs outside `seen` are refused (an empty list takes all). The window of the first is that of all; -1 lets the first
   // decide.
-  TrajectoryStream(Input& input, const GridSet& world, std::vector<EnvTask> seen, int window = -1);
+  TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window = -1);
 
   // The next trajectory; nothing at the end. Errors are kData with the line.
-  std::optional<GridEpisode> next();
+  std::optional<Episode> next();
   // Reads on without parsing until `lines` lines have come in all or the stream ends; how many have come by then.
   uint64_t length_up_to(uint64_t lines);
   // Passes over `lines` lines without parsing and checks that they are those that `hash` was made of (kData).
@@ -30,7 +30,7 @@ class TrajectoryStream {
 
  private:
   Input& input_;
-  const GridSet& world_;
+  const World& world_;
   std::vector<EnvTask> seen_;
   std::vector<bool> allowed_;  // by pair number
   int window_;

@@ -1,11 +1,13 @@
 // What all methods share: the encoder in front, which gives psi(s), and the part behind it, which is the method's own.
 #pragma once
+#include <memory>
 #include <utility>
 #include <vector>
 
+#include "nn/buffer.h"
 #include "nn/init.h"
+#include "policy/encoder.h"
 #include "policy/policy.h"
-#include "policy/resnet.h"
 
 namespace synpo {
 
@@ -19,9 +21,10 @@ class EncodedPolicy : public Policy<T> {
   void initialise(const InitOptions& options, T* parameters, T* statistics) const final;
   void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
                          const std::vector<std::pair<int, int>>& pairs) final;
-  void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits, T* psi) final;
+  void infer(int thread, int size, const uint8_t* observations, const int* pair, T* logits, T* psi) final;
 
-  const ResNet<T>& encoder() const { return encoder_; }
+  size_t observation_size() const final { return encoder_->observation_size(); }
+  const Encoder<T>& encoder() const { return *encoder_; }
   // psi of the last step(), [size, feature].
   const T* last_feature() const { return psi_.data(); }
 
@@ -41,7 +44,7 @@ class EncodedPolicy : public Policy<T> {
 
  private:
   PolicyShape shape_;
-  ResNet<T> encoder_;
+  std::unique_ptr<Encoder<T>> encoder_;
   size_t behind_encoder_;  // where the head's parameters begin
   Buffer<T> psi_, dpsi_;
 };

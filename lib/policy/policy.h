@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "nn/layout.h"
+#include "policy/temporal_sizes.h"
 
 namespace synpo {
 
@@ -17,6 +18,8 @@ enum class SfLoss { kTemporalDifference, kPlannerQ, kCrossEntropy };
 
 // Sizes of a policy (supplement, Section 4.1). The defaults are the paper's for GridWorld.
 struct PolicyShape {
+  Sight sight = Sight::kPictures;
+  TemporalSizes views;  // where sight is of features
   std::vector<int> channels = {32, 64, 128, 256};  // of the four stages of Table 2
   int envs = 20, tasks = 20, actions = 5;
   int feature = 128;    // d, of psi(s)
@@ -62,11 +65,11 @@ class Objective {
   virtual double apply(Parallel& parallel, int n, const T* psi, const T* logits, T* dlogits, T* dpsi) = 0;
 };
 
-// Steps to learn from. Pictures are colour indices [size, 16, 16, history], oldest first; the others are [size].
+// Steps to learn from. Observations are [size, Encoder::observation_size()]; the others are [size].
 template <class T>
 struct StepBatch {
   int size = 0;
-  const uint8_t* pictures = nullptr;
+  const uint8_t* observations = nullptr;
   const int* env = nullptr;
   const int* task = nullptr;
   const int* label = nullptr;  // the expert's action: imitation, disentanglement
@@ -80,7 +83,7 @@ struct StepBatch {
   const T* planner_q = nullptr;  // [size, actions], undiscounted return of each action under the planner
   Objective<T>* objective = nullptr;  // instead of imitation's loss
   bool frozen_statistics = false;     // normalisation by the running statistics, which then stay
-  const T* psi = nullptr;             // [size, feature], instead of pictures; the encoder then is left alone, and its gradient as it was
+  const T* psi = nullptr;             // [size, feature], instead of observations; the encoder then is left alone, and its gradient as it was
 };
 
 // What a method wants of a batch beyond the steps themselves.
@@ -98,6 +101,7 @@ class Policy {
   virtual ~Policy() = default;
   const Layout& parameters() const { return parameters_; }
   const Layout& statistics() const { return statistics_; }  // running statistics of batch normalisation
+  virtual size_t observation_size() const = 0;  // bytes of a state
   virtual BatchNeeds needs() const { return {}; }
   // See kTemperature; 0 where scores are values, whose best action is taken.
   virtual double temperature() const { return kTemperature; }
@@ -116,7 +120,7 @@ class Policy {
   // its scratch memory. At most kInferenceUnit states.
   static constexpr int kInferenceUnit = 64;
   // psi [size, feature] is given where asked for.
-  virtual void infer(int thread, int size, const uint8_t* pictures, const int* pair, T* logits, T* psi = nullptr) = 0;
+  virtual void infer(int thread, int size, const uint8_t* observations, const int* pair, T* logits, T* psi = nullptr) = 0;
 
  protected:
   Layout parameters_, statistics_;

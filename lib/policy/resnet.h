@@ -10,32 +10,30 @@
 #include "nn/conv.h"
 #include "nn/layout.h"
 #include "nn/norm.h"
+#include "policy/encoder.h"
 #include "world/view.h"
 
 namespace synpo {
 
 template <class T>
-class ResNet {
+class ResNet : public Encoder<T> {
  public:
   // Appends its tensors to the two layouts, under `encoder.`.
   ResNet(const std::vector<int>& channels, int feature, bool normalise_input, Layout& parameters, Layout& statistics);
 
+  // Pictures [16, 16, history] of colour indices.
+  size_t observation_size() const override { return size_t(kGridCells) * kHistory; }
+
   // Convolutions as PyTorch does by default, the dense layer Xavier uniform, norms 1 and 0.
-  void initialise(uint64_t seed, T* parameters, T* statistics) const;
+  void initialise(uint64_t seed, T* parameters, T* statistics) const override;
 
-  // psi [n, feature] from pictures [n, 16, 16, history] of colour indices. Keeps what backward() needs; memory grows with n. Where
-  // `frozen`, normalisation takes the running statistics, which stay.
-  void forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi,
-               bool frozen = false);
-  // Writes the gradients of the encoder's parameters; dpsi is the gradient of the last forward()'s psi.
-  void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient);
+  void forward(Parallel& parallel, int n, const uint8_t* pictures, const T* parameters, T* statistics, T* psi, bool frozen) override;
+  void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient) override;
 
-  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics);
-  // One thread's part, n at most Policy::kInferenceUnit.
-  void infer(int thread, int n, const uint8_t* pictures, T* psi);
+  void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics) override;
+  void infer(int thread, int n, const uint8_t* pictures, T* psi) override;
 
-  // Multiply-adds of one sample's forward pass, as executed.
-  size_t multiply_adds() const;
+  size_t multiply_adds() const override;
 
  private:
   struct NormPlace {

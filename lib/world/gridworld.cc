@@ -27,9 +27,9 @@ int treasure_under_agent(const GridFrame& frame) {
   return -1;
 }
 
-GridStep grid_step(const Maze& maze, const Task& task, GridState& state, int action) {
+WorldStep grid_step(const Maze& maze, const Task& task, GridState& state, int action) {
   static constexpr int offsets[4] = {-kGridSide, kGridSide, -1, 1};
-  GridStep step = {-1, false, false, false, false};
+  WorldStep step = {-1, false, false, false, false};
   ++state.steps;
   if (action == kPick) {
     const int found = treasure_under_agent(state.now);
@@ -42,7 +42,7 @@ GridStep grid_step(const Maze& maze, const Task& task, GridState& state, int act
       }
     } else if (found >= 0) {
       step.reward_cents -= 1000;
-      step.terminated = step.wrong_pick = true;
+      step.terminated = step.wrong = true;
     }
   } else {
     // The outer wall keeps the sum inside the grid.

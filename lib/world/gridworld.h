@@ -13,6 +13,7 @@
 #include "base/random.h"
 #include "world/maze.h"
 #include "world/task.h"
+#include "world/world.h"
 
 namespace synpo {
 
@@ -38,15 +39,9 @@ struct GridState {
   bool operator==(const GridState&) const = default;
 };
 
-struct GridStep {
-  int reward_cents;  // hundredths, so that rewards add up exactly
-  bool terminated, truncated, success, wrong_pick;
-  bool ended() const { return terminated || truncated; }
-};
-
 // Agent and treasures placed at random, all free cells alike.
 GridState grid_reset(const Maze& maze, Random& random);
-GridStep grid_step(const Maze& maze, const Task& task, GridState& state, int action);
+WorldStep grid_step(const Maze& maze, const Task& task, GridState& state, int action);
 // The treasure on the agent's cell, or -1.
 int treasure_under_agent(const GridFrame& frame);
 // The treasure to pick next.

@@ -46,7 +46,7 @@ std::array<int, kGridActions> Planner::q_cents(const Task& task, const GridState
   std::array<int, kGridActions> q;
   for (int action = 0; action < kGridActions; ++action) {
     GridState next = state;
-    const GridStep step = grid_step(*maze_, task, next, action);
+    const WorldStep step = grid_step(*maze_, task, next, action);
     q[action] = step.reward_cents + (step.terminated ? 0 : value_cents(task, next));
   }
   return q;

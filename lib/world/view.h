@@ -15,7 +15,6 @@ struct Rgb {
   uint8_t r, g, b;
 };
 
-constexpr int kHistory = 4;                          // pictures in the network's input
 constexpr int kViewChannels = 3 * kHistory;
 
 // One colour a kind of cell. Everything but black lies on a corner of its own of the colours' hull as far as it can, so that a

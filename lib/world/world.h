@@ -55,8 +55,9 @@ constexpr int kStepKinds = 4;
 // What an observation is made of, which decides the encoder.
 enum class Sight : uint8_t {
   kPictures,  // uint8 [16, 16, history] of colour indices, oldest first (view.h)
-  kFeatures   // float [history, 2048] of views, oldest first, and the object in the hand (kitchen_set.h)
+  kFeatures   // float [history, kViewFeatures] of views, oldest first, and kHandFloats more: the number of the object in the hand, then zeros
 };
+constexpr int kViewFeatures = 2048, kHandFloats = 16;
 
 struct Environment {
   std::string name;
@@ -115,5 +116,7 @@ class World {
 // The world of a name on the command line: "gridworld", "gridworld:DIR", "kitchen" or "kitchen:DIR". Throws kUsage for another, kData and kNoInput
 // for what is wrong with its files.
 std::unique_ptr<World> open_world(const std::string& name);
+// A world by its name() from environments() as a file has kept them. Throws kData where content and hash differ or content is malformed.
+std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments);
 
 }  // namespace synpo

@@ -20,12 +20,13 @@
 #include "learn/episode.h"
 #include "learn/model.h"
 #include "learn/recipe.h"
+#include "learn/running_episode.h"
 #include "learn/steps.h"
 #include "nn/adam.h"
+#include "nn/conv.h"
 #include "nn/gemm.h"
 #include "policy/synpo.h"
-#include "world/gridworld.h"
-#include "world/planner.h"
+#include "world/grid_set.h"
 #include "world/view.h"
 
 using namespace synpo;
@@ -115,21 +116,20 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
 
 void row(const char* name, double value, const char* unit) { std::printf("%s\t%.6g\t%s\n", name, value, unit); }
 
-// Steps of the world with the network's input drawn at every one, on one core.
-double world_rate() {
-  const GridSet world = GridSet::open("gridworld");
-  std::vector<uint8_t> pictures(size_t(kGridCells) * kHistory);
+// Steps of a world with the network's input made at every one, on one core.
+double world_rate(const std::string& name) {
+  const std::unique_ptr<World> world = open_world(name);
+  std::vector<uint8_t> observation(world->observation_size());
   uint64_t episode = 0;
-  return rate(100000, 2, [&] {
-    for (int steps = 0; steps < 100000;) {
-      const int env = int(episode % world.envs()), task = int(episode % world.task_count());
-      GridState state = episode_start(world, {env, task}, 1, Purpose::kEpisodeStart, int64_t(episode++));
-      GridHistory history;
-      GridStep step = {};
+  return rate(20000, 2, [&] {
+    for (int steps = 0; steps < 20000;) {
+      const EnvTask pair = {int(episode % world->envs()), int(episode % world->task_count())};
+      RunningEpisode running;
+      running.start(pair, episode_start(*world, pair, 1, Purpose::kEpisodeStart, int64_t(episode++)));
+      WorldStep step = {};
       while (!step.ended()) {
-        history.push(state.now);
-        draw_history(world.maze(env), history, 1, pictures.data());
-        step = grid_step(world.maze(env), world.tasks()[task], state, world.planner(env).action(world.tasks()[task], state));
+        world->observe(pair.env, running.history, 1, observation.data());
+        step = running.step(*world, world->expert(pair, running.now()));
         ++steps;
       }
     }
@@ -278,7 +278,7 @@ void method_rows(int threads) {
 
 int rows() {
   const int threads = Parallel().threads();
-  row("world_steps_per_s", world_rate(), "steps/s");
+  row("world_steps_per_s", world_rate("gridworld"), "steps/s");
   row("trajectories_per_s", trajectory_rate(), "trajectories/s");
   for (const NamedKernels<float>& target : all_kernels<float>()) {
     choose_kernels(target.name);

@@ -8,19 +8,9 @@
 namespace synpo {
 namespace {
 
-Model trained_on(const GridSet& world, std::vector<EnvTask> seen) {
-  Model model;
-  model.method = "synpo";
-  model.shape = tiny_shape(false);
-  model.shape.envs = world.envs();
-  model.shape.tasks = world.task_count();
-  model.window = 1;
+Model trained_on(const World& world, std::vector<EnvTask> seen) {
+  Model model = fresh_model("synpo", tiny_shape_for(world), {3, 1});
   model.seen = std::move(seen);
-  model.policy = make_policy("synpo", model.shape);
-  model.parameters.grow(model.policy->parameters().total());
-  model.statistics.grow(model.policy->statistics().total());
-  model.statistics.zero();
-  model.policy->initialise({3, 1}, model.parameters.data(), model.statistics.data());
   return model;
 }
 
@@ -30,7 +20,7 @@ GridSet first_mazes(int count) {
   return GridSet(std::move(mazes));
 }
 
-GridEpisode demonstration(const GridSet& world, EnvTask pair) { return replay(world, expert_episode(world, pair, 1, 0, 0, 1)); }
+Episode demonstration(const GridSet& world, EnvTask pair) { return replay(world, expert_episode(world, pair, 1, 0, 0, 1)); }
 
 std::vector<float> tensor(const Model& model, const std::string& name) {
   const TensorInfo& info = *model.policy->parameters().find(name);

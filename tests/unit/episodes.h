@@ -5,6 +5,7 @@
 
 #include "learn/episode.h"
 #include "learn/memory.h"
+#include "world/grid_set.h"
 #include "world/view.h"
 
 namespace synpo {
@@ -15,7 +16,7 @@ inline const GridSet& builtin_world() {
   return world;
 }
 
-inline GridEpisode expert(EnvTask pair, int64_t number, double noise = 0, uint64_t seed = 1) {
+inline Episode expert(EnvTask pair, int64_t number, double noise = 0, uint64_t seed = 1) {
   return replay(builtin_world(), expert_episode(builtin_world(), pair, seed, number, noise, 1));
 }
 

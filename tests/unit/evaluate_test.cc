@@ -21,6 +21,7 @@ class FunctionPolicy : public Policy<float> {
  public:
   using Scores = void (*)(const uint8_t* pictures, int pair, float* scores);
   explicit FunctionPolicy(Scores function) : function_(function) {}
+  size_t observation_size() const override { return size_t(kGridCells) * kHistory; }
   void initialise(const InitOptions&, float*, float*) const override {}
   Losses step(Parallel&, const StepBatch<float>&, const LossWeights&, const float*, float*, float*, float*) override {
     throw std::logic_error("evaluation does not learn");
@@ -70,19 +71,19 @@ std::vector<PairResult> run(FunctionPolicy::Scores scores, const std::vector<Eva
 PairResult played(FunctionPolicy::Scores scores, const EvalEpisode& episode, const EvalOptions& options) {
   const EnvTask pair = kPairs[episode.pair];
   const Maze& maze = builtin_world().maze(pair.env);
-  GridState state = episode_start(builtin_world(), pair, options.seed, Purpose::kEvaluation, episode.number);
+  GridState state = to_grid_state(episode_start(builtin_world(), pair, options.seed, Purpose::kEvaluation, episode.number));
   std::vector<GridFrame> frames = {state.now};
   PairResult result;
   result.episodes = 1;
   while (true) {
     float score[kGridActions];
     scores(pictures_of(maze, frames, options.window).data(), episode.pair, score);
-    const GridStep step = grid_step(maze, builtin_world().tasks()[pair.task], state, argmax(score, kGridActions));
+    const WorldStep step = grid_step(maze, builtin_world().tasks()[pair.task], state, argmax(score, kGridActions));
     frames.push_back(state.now);
     result.reward_cents += step.reward_cents;
     ++result.length;
     result.successes = step.success;
-    result.wrong = step.wrong_pick;
+    result.wrong = step.wrong;
     result.timeouts = !step.terminated && (step.truncated || result.length == options.step_limit);
     if (step.ended() || result.length == options.step_limit) return result;
   }
@@ -171,7 +172,7 @@ TEST(Evaluate, ALearnerThatRunsIntoTheWallTimesOut) {
   for (const EvalEpisode& episode : episodes) {
     // So many steps up to the wall, then two cents a step.
     const EnvTask pair = kPairs[episode.pair];
-    int cell = episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number).now.agent, way = 0;
+    int cell = to_grid_state(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number)).now.agent, way = 0;
     while (!builtin_world().maze(pair.env).wall[cell - kGridSide]) {
       cell -= kGridSide;
       ++way;
@@ -188,7 +189,7 @@ TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
   int64_t first_picks = 0;
   for (const EvalEpisode& episode : episodes) {
     const EnvTask pair = kPairs[episode.pair];
-    const int found = treasure_under_agent(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number).now);
+    const int found = treasure_under_agent(to_grid_state(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number)).now);
     const bool first = found == builtin_world().tasks()[pair.task].first;
     first_picks += first;
     if (found >= 0 && !first)
@@ -216,7 +217,7 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
              [&](const Trajectory& t) {
                const EvalEpisode& episode = episodes[lines[threads - 1].size()];
                lines[threads - 1].push_back(format_trajectory(t));
-               const GridEpisode again = replay(builtin_world(), t);
+               const Episode again = replay(builtin_world(), t);
                EXPECT_EQ(again.pair, kPairs[episode.pair]);
                EXPECT_EQ(again.start, episode_start(builtin_world(), again.pair, 3, Purpose::kEvaluation, episode.number));
                EXPECT_EQ(t.episode, episode.number);
@@ -243,7 +244,7 @@ TEST(Evaluate, NoEpisodesIsNoWork) {
 TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
   const EnvTask pair = {3, 7};
   const Maze& maze = builtin_world().maze(pair.env);
-  GridState state = episode_start(builtin_world(), pair, 5, Purpose::kEpisodeStart, 0);
+  GridState state = to_grid_state(episode_start(builtin_world(), pair, 5, Purpose::kEpisodeStart, 0));
   for (const int pictures_each : {1, 2, kHistory}) {
     FunctionPolicy policy(hashed);
     const std::vector<ActionRates> rates = probe_cells(policy, builtin_world(), pair, state, 1, pictures_each);
@@ -264,7 +265,7 @@ TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
 
 TEST(Probe, ProbabilitiesAreTheSoftmaxOfTheScores) {
   FunctionPolicy policy(always<kLeft>);
-  const GridState state = episode_start(builtin_world(), {0, 0}, 5, Purpose::kEpisodeStart, 0);
+  const GridState state = to_grid_state(episode_start(builtin_world(), {0, 0}, 5, Purpose::kEpisodeStart, 0));
   for (const ActionRates& rates : probe_cells(policy, builtin_world(), {0, 0}, state, 1, 1)) {
     EXPECT_NEAR(rates[kLeft], std::exp(1) / (std::exp(1) + 4), 1e-12);
     EXPECT_NEAR(rates[kPick], 1 / (std::exp(1) + 4), 1e-12);

@@ -30,7 +30,7 @@ TEST(Expert, GoesStraightToSuccess) {
     EXPECT_EQ(t.episode, i);
     EXPECT_TRUE(t.success && t.terminated && !t.truncated);
     EXPECT_TRUE(t.labels.empty());
-    const GridState start = episode_start(world, pair, 5, Purpose::kEpisodeStart, i);
+    const GridState start = to_grid_state(episode_start(world, pair, 5, Purpose::kEpisodeStart, i));
     EXPECT_EQ(int(t.actions.size()), world.planner(pair.env).steps_to_success(world.tasks()[pair.task], start));
     EXPECT_EQ(t.start.at("agent"), (std::pair{start.now.agent / 16, start.now.agent % 16}));
     EXPECT_EQ(t.start.at("P"), (std::pair{start.now.treasures[4] / 16, start.now.treasures[4] % 16}));
@@ -43,8 +43,8 @@ TEST(Expert, NoiseTakesOtherMovesAndKeepsTheLabels) {
   int moves = 0, other = 0, picks = 0;
   for (int i = 0; i < 300; ++i) {
     const EnvTask pair = {i % world.envs(), i % world.task_count()};
-    const GridEpisode played = expert(pair, i, 0.4);
-    GridState state = played.start;
+    const Episode played = expert(pair, i, 0.4);
+    GridState state = to_grid_state(played.start);
     for (size_t t = 0; t < played.actions.size(); ++t) {
       ASSERT_EQ(played.labels[t], world.planner(pair.env).action(world.tasks()[pair.task], state));
       if (played.labels[t] != kPick) {
@@ -81,7 +81,7 @@ TEST(Replay, ComesBackThroughTheFile) {
   for (int i = 0; i < 100; ++i) {
     const EnvTask pair = {i % world.envs(), i % world.task_count()};
     const Trajectory t = expert_episode(world, pair, 2, i, i % 2 * 0.5, 1);
-    const GridEpisode episode = replay(world, parse_trajectory(line_of(t), kGridActions, kGridStepLimit));
+    const Episode episode = replay(world, parse_trajectory(line_of(t), kGridActions, kGridStepLimit));
     EXPECT_EQ(episode.pair, pair);
     EXPECT_EQ(episode.start, episode_start(world, pair, 2, Purpose::kEpisodeStart, i));
     EXPECT_EQ(episode.actions, t.actions);
@@ -116,7 +116,7 @@ TEST(Replay, RefusesWhatIsNotThisWorlds) {
   EXPECT_EQ(refused([](Trajectory& t) { t.rules = 2; }), "65 rules version 2, this build has 1");
   EXPECT_EQ(refused([](Trajectory& t) { t.env = "map21"; }), "65 unknown env 'map21' (other maps? see -w)");
   EXPECT_EQ(refused([](Trajectory& t) { t.task = "R-R"; }), "65 unknown task 'R-R'");
-  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }), "65 env 'map4' is not the maze of that name here (other maps? see -w)");
+  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }), "65 env 'map4' is not the one of that name here (other maps? see -w)");
   EXPECT_EQ(refused([](Trajectory& t) { t.start.erase("G"); }), "65 field 'start': no place for 'G'");
   EXPECT_EQ(refused([](Trajectory& t) { t.start["B"] = {0, 3}; }), "65 field 'start': 'B' at row 0, column 3 is not on the floor of map3");
   EXPECT_EQ(refused([](Trajectory& t) { t.start["agent"] = {1, 1 << 20}; }),
@@ -296,8 +296,8 @@ Checkpoint golden() {
 
 TEST(GoldenV1, TheModelGivesTheScoresItGave) {
   const Checkpoint checkpoint = golden();
-  const GridSet world = world_of(checkpoint);
-  Model model = load_model(checkpoint, world);
+  const std::unique_ptr<World> world = world_of(checkpoint);
+  Model model = load_model(checkpoint, *world);
   EXPECT_EQ(model.seen, (std::vector<EnvTask>{{0, 0}, {0, 3}, {1, 1}, {2, 19}}));
   EXPECT_TRUE(model.is_seen({1, 1}));
   EXPECT_FALSE(model.is_seen({1, 2}));
@@ -309,7 +309,7 @@ TEST(GoldenV1, TheModelGivesTheScoresItGave) {
   for (int i = 0; i < 3; ++i) {
     const EnvTask pair = i == 0 ? EnvTask{0, 0} : i == 1 ? EnvTask{2, 19} : EnvTask{1, 7};
     const std::vector<uint8_t> pictures =
-        pictures_of(world.maze(pair.env), {episode_start(builtin_world(), {0, 0}, 1, Purpose::kEvaluation, i).now}, model.window);
+        pictures_of(as_gridworld(*world, "this").maze(pair.env), {to_grid_state(episode_start(builtin_world(), {0, 0}, 1, Purpose::kEvaluation, i)).now}, model.window);
     float scores[5];
     model.policy->infer(0, 1, pictures.data(), &i, scores);
     for (int a = 0; a < 5; ++a) EXPECT_NEAR(scores[a], want[i][a], 1e-5) << i << " " << a;
@@ -318,9 +318,9 @@ TEST(GoldenV1, TheModelGivesTheScoresItGave) {
 
 TEST(Model, ComesBack) {
   const Checkpoint checkpoint = golden();
-  const GridSet world = world_of(checkpoint);
-  const Model model = load_model(checkpoint, world);
-  Checkpoint again = describe_model(model, world);
+  const std::unique_ptr<World> world = world_of(checkpoint);
+  const Model model = load_model(checkpoint, *world);
+  Checkpoint again = describe_model(model, *world);
   again.options = checkpoint.options;
   add_tensors(again.file, "", model.policy->parameters(), model.parameters.data());
   add_tensors(again.file, "", model.policy->statistics(), model.statistics.data());
@@ -334,8 +334,8 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
     Checkpoint checkpoint = golden();
     change(checkpoint);
     return thrown([&] {
-      const GridSet world = world_of(checkpoint);
-      load_model(checkpoint, world);
+      const std::unique_ptr<World> world = world_of(checkpoint);
+      load_model(checkpoint, *world);
     });
   };
   EXPECT_EQ(refused([](Checkpoint&) {}), "nothing thrown");

@@ -126,7 +126,7 @@ TEST(GridSet, FindsNames) {
   EXPECT_EQ(world.task_index("O"), -1);
   std::set<uint64_t> numbers;
   for (int env = 0; env < world.envs(); ++env)
-    for (int task = 0; task < world.task_count(); ++task) numbers.insert(world.pair_number(env, task));
+    for (int task = 0; task < world.task_count(); ++task) numbers.insert(world.pair_number({env, task}));
   EXPECT_EQ(numbers.size(), 400u);
   EXPECT_EQ(thrown([] { GridSet::open("kitchen"); }), "64 unknown world 'kitchen', expected gridworld or gridworld:DIR");
   EXPECT_EQ(thrown([] { GridSet({open_maze(), open_maze()}); }), "65 two environments are named 'open'");

@@ -10,17 +10,16 @@
 #include "learn/model.h"
 #include "numbers.h"
 #include "policy/policy.h"
+#include "world/grid_set.h"
 #include "world/view.h"
 
 namespace synpo {
-
-constexpr size_t kPicture = size_t(kGridCells) * kHistory;
 
 // Steps with everything drawn at random.
 template <class T>
 struct RandomSteps {
   RandomSteps(int size, const PolicyShape& shape, uint64_t seed)
-      : pictures(size * kPicture), reward(random_values<T>(size, seed)), planner_q(random_values<T>(size_t(size) * shape.actions, seed + 1)) {
+      : pictures(size_t(size) * kGridCells * kHistory), reward(random_values<T>(size, seed)), planner_q(random_values<T>(size_t(size) * shape.actions, seed + 1)) {
     Random random(seed, Purpose::kBatch);
     for (uint8_t& colour : pictures) colour = uint8_t(random.below(kGridColours));
     for (int i = 0; i < size; ++i) {
@@ -63,7 +62,7 @@ struct Network {
     const int shards = shard_count(batch.size, at_once);
     parallel.run(shards, [&](int shard, int thread) {
       const Range range = shard_range(batch.size, at_once, shard);
-      policy->infer(thread, range.size(), batch.pictures + range.begin * kPicture, numbers.data() + range.begin,
+      policy->infer(thread, range.size(), batch.observations + range.begin * policy->observation_size(), numbers.data() + range.begin,
                     scores.data() + size_t(range.begin) * actions);
     });
     return scores;
@@ -95,6 +94,13 @@ inline PolicyShape tiny_shape(bool normalise) {
   shape.head_hidden = 9;
   shape.seam = 5;
   shape.normalise_input = shape.normalise_embeddings = normalise;
+  return shape;
+}
+
+inline PolicyShape tiny_shape_for(const World& world) {
+  PolicyShape shape = tiny_shape(false);
+  shape.envs = world.envs();
+  shape.tasks = world.task_count();
   return shape;
 }
 

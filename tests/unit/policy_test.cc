@@ -5,6 +5,7 @@
 #include <cmath>
 #include <set>
 
+#include "nn/norm.h"
 #include "policy_fixture.h"
 
 namespace synpo {

@@ -124,7 +124,7 @@ TEST(Objective, AStepFromPsiIsTheStepBehindTheEncoder) {
   const Losses losses = whole.step(parallel, steps.batch(), {});
   StepBatch<float> batch = steps.batch();
   batch.psi = dynamic_cast<EncodedPolicy<float>&>(*whole.policy).last_feature();
-  batch.pictures = nullptr;
+  batch.observations = nullptr;
   EXPECT_EQ(from_psi.step(parallel, batch, {}).total, losses.total);
   EXPECT_EQ(from_psi.logits, whole.logits);
   for (const TensorInfo& tensor : whole.policy->parameters().tensors())
@@ -149,19 +149,9 @@ PpoOptions small_ppo() {
   return options;
 }
 
-Model small_model(const GridSet& world, const std::string& method) {
-  Model model;
-  model.method = method;
-  model.shape = tiny_shape(false);
-  model.shape.envs = world.envs();
-  model.shape.tasks = world.task_count();
-  model.window = 1;
+Model small_model(const World& world, const std::string& method) {
+  Model model = fresh_model(method, tiny_shape_for(world), {3, 1});
   model.seen = {{0, 3}, {2, 5}, {1, 7}};
-  model.policy = make_policy(method, model.shape);
-  model.parameters.grow(model.policy->parameters().total());
-  model.statistics.grow(model.policy->statistics().total());
-  model.statistics.zero();
-  model.policy->initialise({3, 1}, model.parameters.data(), model.statistics.data());
   return model;
 }
 

@@ -136,7 +136,7 @@ TEST(Trajectory, WrongKindsAreNamed) {
   EXPECT_EQ(refused(with("env_hash", "\"12\"")), "65 found '12', expected a hash of 16 hexadecimal digits");
   EXPECT_EQ(refused(with("start", "[1,2]")), "65 field 'start': found '[1,2]', expected an object of places");
   EXPECT_EQ(refused(with("start", R"({"agent":[1]})")), "65 field 'start': found '[1]', expected [row, column]");
-  EXPECT_EQ(refused(with("start", R"({"agent":[1,-1]})")), "65 field 'start': found '-1', expected a whole number from 0 to 1048576");
+  EXPECT_EQ(refused(with("start", R"({"agent":[1,-2000000]})")), "65 field 'start': found '-2000000', expected a whole number from -1048576 to 1048576");
 }
 
 std::string array_of(size_t size, const std::string& value) {

@@ -26,11 +26,11 @@ TEST(GridWorld, MovesUpDownLeftRight) {
   const std::pair<int, uint8_t> moves[] = {{kUp, cell(4, 5)}, {kDown, cell(6, 5)}, {kLeft, cell(5, 4)}, {kRight, cell(5, 6)}};
   for (const auto& [action, to] : moves) {
     GridState state = start_at(cell(5, 5));
-    const GridStep step = grid_step(maze, kRedBlue, state, action);
+    const WorldStep step = grid_step(maze, kRedBlue, state, action);
     EXPECT_EQ(state.now.agent, to);
     EXPECT_EQ(state.steps, 1);
     EXPECT_EQ(step.reward_cents, -1);
-    EXPECT_FALSE(step.ended() || step.success || step.wrong_pick);
+    EXPECT_FALSE(step.ended() || step.success || step.wrong);
   }
 }
 
@@ -48,9 +48,9 @@ TEST(GridWorld, AWallCostsAnotherCentAndStays) {
 TEST(GridWorld, PickOnAnEmptyCellDoesNothingMore) {
   GridState state = start_at(cell(5, 5));
   const GridState before = state;
-  const GridStep step = grid_step(open_maze(), kRedBlue, state, kPick);
+  const WorldStep step = grid_step(open_maze(), kRedBlue, state, kPick);
   EXPECT_EQ(step.reward_cents, -1);
-  EXPECT_FALSE(step.ended() || step.wrong_pick);
+  EXPECT_FALSE(step.ended() || step.wrong);
   EXPECT_EQ(state.now, before.now);
   EXPECT_EQ(state.picked, 0);
   EXPECT_EQ(state.steps, 1);
@@ -59,18 +59,18 @@ TEST(GridWorld, PickOnAnEmptyCellDoesNothingMore) {
 TEST(GridWorld, PicksInOrder) {
   const Maze maze = open_maze();
   GridState state = start_at(cell(14, 1));
-  const GridStep first = grid_step(maze, kRedBlue, state, kPick);
+  const WorldStep first = grid_step(maze, kRedBlue, state, kPick);
   EXPECT_EQ(first.reward_cents, 99);
-  EXPECT_FALSE(first.ended() || first.success || first.wrong_pick);
+  EXPECT_FALSE(first.ended() || first.success || first.wrong);
   EXPECT_EQ(state.now.treasures[0], kPicked);
   EXPECT_EQ(state.picked, 1);
   // What was picked is gone: a second pick finds nothing.
   EXPECT_EQ(grid_step(maze, kRedBlue, state, kPick).reward_cents, -1);
   EXPECT_EQ(grid_step(maze, kRedBlue, state, kRight).reward_cents, -1);
-  const GridStep last = grid_step(maze, kRedBlue, state, kPick);
+  const WorldStep last = grid_step(maze, kRedBlue, state, kPick);
   EXPECT_EQ(last.reward_cents, 1099);
   EXPECT_TRUE(last.terminated && last.success);
-  EXPECT_FALSE(last.truncated || last.wrong_pick);
+  EXPECT_FALSE(last.truncated || last.wrong);
   EXPECT_EQ(state.picked, 2);
   EXPECT_EQ(state.steps, 4);
 }
@@ -79,9 +79,9 @@ TEST(GridWorld, AnyOtherTreasureEndsTheEpisode) {
   const Maze maze = open_maze();
   for (int treasure = 1; treasure < kTreasures; ++treasure) {
     GridState state = start_at(cell(14, 1 + treasure));
-    const GridStep step = grid_step(maze, kRedBlue, state, kPick);
+    const WorldStep step = grid_step(maze, kRedBlue, state, kPick);
     EXPECT_EQ(step.reward_cents, -1001);
-    EXPECT_TRUE(step.terminated && step.wrong_pick);
+    EXPECT_TRUE(step.terminated && step.wrong);
     EXPECT_FALSE(step.truncated || step.success);
   }
   GridState state = start_at(cell(14, 3));
@@ -95,13 +95,13 @@ TEST(GridWorld, IsCutAfter300Steps) {
   GridState state = start_at(cell(1, 1));
   for (int i = 1; i < kGridStepLimit; ++i) ASSERT_FALSE(grid_step(maze, kRedBlue, state, kUp).ended());
   GridState other = state;
-  const GridStep cut = grid_step(maze, kRedBlue, state, kUp);
+  const WorldStep cut = grid_step(maze, kRedBlue, state, kUp);
   EXPECT_TRUE(cut.truncated);
-  EXPECT_FALSE(cut.terminated || cut.success || cut.wrong_pick);
+  EXPECT_FALSE(cut.terminated || cut.success || cut.wrong);
   EXPECT_EQ(state.steps, 300);
   // An episode that ends by itself in its last step is not cut.
   other.now.agent = cell(14, 5);
-  const GridStep wrong = grid_step(maze, kRedBlue, other, kPick);
+  const WorldStep wrong = grid_step(maze, kRedBlue, other, kPick);
   EXPECT_TRUE(wrong.terminated);
   EXPECT_FALSE(wrong.truncated);
 }
@@ -149,7 +149,7 @@ TEST(GridWorld, TwoEqualWorldsStepAlike) {
     Random start_a(9, Purpose::kEpisodeStart, 1, uint64_t(episode)), start_b(9, Purpose::kEpisodeStart, 1, uint64_t(episode));
     Random moves(9, Purpose::kNoise, 1, uint64_t(episode));
     GridState state_a = grid_reset(a.maze(env), start_a), state_b = grid_reset(b.maze(env), start_b);
-    GridStep step_a = {}, step_b = {};
+    WorldStep step_a = {}, step_b = {};
     while (!step_a.ended()) {
       ASSERT_EQ(state_a, state_b);
       uint8_t view_a[kGridCells], view_b[kGridCells];
@@ -222,7 +222,7 @@ TEST(Planner, ActsByItsValues) {
     // Each value is the return of that action and the planner's own play behind it.
     for (int action = 0; action < kGridActions; ++action) {
       GridState at = state;
-      GridStep step = grid_step(world.maze(env), task, at, action);
+      WorldStep step = grid_step(world.maze(env), task, at, action);
       int sum = step.reward_cents, steps = 0;
       while (!step.ended()) {
         ++steps;
@@ -249,7 +249,7 @@ std::vector<int> best_returns(const Maze& maze, const Task& task, const std::arr
           state.now = {at, treasures};
           state.picked = uint8_t(picked);
           if (picked) state.now.treasures[task.first] = kPicked;
-          const GridStep step = grid_step(maze, task, state, action);
+          const WorldStep step = grid_step(maze, task, state, action);
           const int sum = step.reward_cents + (step.terminated ? 0 : value[state.picked * kGridCells + state.now.agent]);
           int& best = value[picked * kGridCells + at];
           if (sum > best) {
@@ -288,7 +288,7 @@ TEST(Planner, MeanExpertEpisodeIs34To40Steps) {
   for (int env = 0; env < world.envs(); ++env)
     for (int task = 0; task < world.task_count(); ++task)
       for (uint64_t i = 0; i < 100; ++i, ++episodes) {
-        Random random(1, Purpose::kEpisodeStart, world.pair_number(env, task), i);
+        Random random(1, Purpose::kEpisodeStart, world.pair_number({env, task}), i);
         steps += world.planner(env).steps_to_success(world.tasks()[task], grid_reset(world.maze(env), random));
       }
   EXPECT_GE(steps / episodes, 34);
