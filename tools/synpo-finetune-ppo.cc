@@ -134,7 +134,7 @@ int ppo(int argc, char** argv) {
   const bool fresh = random && !resumes;
   const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from);
   const World& world = *opened;
-  const ImitationOptions network = recipe(kDefaultRecipe, s.method);
+  const ImitationOptions network = recipe(kDefaultRecipe, s.method, world.sight());
   Model model = fresh ? fresh_model(s.method, network.shape(world), {uint64_t(s.seed), network.embedding_sd}) : load_model(from, world);
   if (!s.pairs.empty()) {
     Input input(s.pairs);

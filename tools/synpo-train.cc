@@ -110,7 +110,7 @@ int body(int argc, char** argv) {
               s.method = name;
             })
       .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", "gridworld, or gridworld:DIR", s.world)
+      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen or kitchen:DIR", s.world)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
       .text('o', "output", "FILE", "write the checkpoint to FILE", s.output)
       .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and on SIGINT or SIGTERM", s.save)
@@ -153,7 +153,7 @@ int body(int argc, char** argv) {
   if (resumes) {
     run = std::make_unique<Imitation>(world, parallel, from);
   } else {
-    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method), seen, uint64_t(s.seed));
+    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.sight()), seen, uint64_t(s.seed));
     if (!s.init.empty()) run->take_weights(load_model(load(s.init), world));
   }
   if (options.given("count") || (!resumes && limit_s == 0)) run->set_total_updates(s.updates);

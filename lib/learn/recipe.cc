@@ -24,6 +24,7 @@ struct Hyper {
 };
 
 constexpr double kMany = 1e9;
+constexpr int kTemporalFeature = 256;  // d of Table 3
 
 const Hyper kHypers[] = {
     {"trajectories", &O::trajectories, 1, 1e5, true, "whole trajectories an update, where --batch-states is 0", "What an update learns from"},
@@ -53,7 +54,7 @@ const Hyper kHypers[] = {
     {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},
     {"normalise-input", &O::normalise_input, 0, 1, true, "1: batch normalisation of the pictures, 0: fixed scaling"},
     {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "1: embeddings are scaled to one length"},
-    {"feature", &O::feature, 1, 4096, true, "size d of the state feature; mlp: 256"},
+    {"feature", &O::feature, 1, 4096, true, "size d of the state feature; mlp, kitchens: 256"},
     {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
     {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
     {"hidden", &O::hidden, 1, 16384, true, "hidden units of alpha, beta, f_env and f_task"},
@@ -141,8 +142,9 @@ double O::rate(int64_t update, int64_t total) const {
   return final_rate + (learning_rate - final_rate) * 0.5 * (1 + std::cos(M_PI * done(update, total)));
 }
 
-ImitationOptions recipe(const std::string& name, const std::string& method) {
+ImitationOptions recipe(const std::string& name, const std::string& method, Sight sight) {
   ImitationOptions options;
+  if (sight == Sight::kFeatures) options.feature = kTemporalFeature;
   for (const MethodDefault& given : kMethodDefaults)
     if (method == given.method) options.*find(given.name).value = given.value;
   if (name == "paper") {
@@ -194,8 +196,8 @@ void RecipeOptions::add_to(Options& options) {
       .flag(0, "no-task-loss", "the same as --task-loss 0", no_task_loss_);
 }
 
-ImitationOptions RecipeOptions::result(const std::string& method) const {
-  ImitationOptions options = recipe(recipe_, method);
+ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) const {
+  ImitationOptions options = recipe(recipe_, method, sight);
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
   if (no_reward_loss_) options.reward_loss = 0;

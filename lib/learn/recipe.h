@@ -42,8 +42,8 @@ struct ImitationOptions {
 };
 
 // "paper" is Algorithm 1 and the supplement to the letter; "fast" is the default. Throws kUsage for another name. Some values depend on the
-// method.
-ImitationOptions recipe(const std::string& name, const std::string& method = "synpo");
+// method, and on what a world gives to see.
+ImitationOptions recipe(const std::string& name, const std::string& method = "synpo", Sight sight = Sight::kPictures);
 constexpr char kDefaultRecipe[] = "fast";
 
 // Values given by name, over a recipe.
@@ -52,7 +52,7 @@ class RecipeOptions {
   // Adds --recipe and an option for every hyper-parameter.
   void add_to(Options& options);
   // The recipe with what the command line changed. Throws kUsage for combinations that cannot be.
-  ImitationOptions result(const std::string& method) const;
+  ImitationOptions result(const std::string& method, Sight sight = Sight::kPictures) const;
   bool given() const { return !changes_.empty() || recipe_given_ || no_reward_loss_ || no_env_loss_ || no_task_loss_; }
   const std::string& name() const { return recipe_; }
 
