@@ -92,8 +92,14 @@ std::vector<Adaptation::Span> Adaptation::learned() const {
   std::vector<Span> spans;
   const size_t width = size_t(model_.shape.embedding);
   const auto add_rows = [&](const TensorInfo& tensor, const std::vector<bool>& rows) {
-    for (size_t row = 0; row < rows.size(); ++row)
-      if (rows[row]) spans.push_back({tensor.offset + row * width, width});
+    for (size_t row = 0; row < rows.size(); ++row) {
+      const size_t offset = tensor.offset + row * width;
+      if (!rows[row]) continue;
+      if (!spans.empty() && spans.back().offset + spans.back().size == offset)
+        spans.back().size += width;
+      else
+        spans.push_back({offset, width});
+    }
   };
   add_rows(table(*model_.policy, "embedding.env"), new_env_);
   add_rows(table(*model_.policy, "embedding.task"), new_task_);
@@ -135,15 +141,26 @@ void Adaptation::compute_features() {
   });
 }
 
-Losses Adaptation::update() {
-  if (demonstrations() == 0) fail(Exit::kData, "no demonstration to adapt from");
-  compute_features();
-  Random random(seed_, Purpose::kBatch, 0, uint64_t(updates_));
-  std::vector<size_t> rows;
-  for (int i = 0; i < options_.trajectories; ++i) {
-    const uint32_t episode = random.below(uint32_t(demonstrations()));
-    for (size_t row = first_[episode]; row < first_[episode + 1]; ++row) rows.push_back(row);
+bool Adaptation::has_embedding_loss() const {
+  return EmbeddingLoss::fits(model_) && !options_.targets.heads && !options_.targets.coefficients &&
+         env_.size() <= options_.memory_bytes / EmbeddingLoss::step_bytes(model_.shape);
+}
+
+void Adaptation::extend_embedding_loss() {
+  if (!embedding_loss_) embedding_loss_.emplace(model_, new_env_, new_task_);
+  std::vector<EmbeddingLoss::Steps> episodes;
+  for (size_t i = embedding_loss_->episodes(); i < demonstrations(); ++i) {
+    const size_t at = first_[i];
+    episodes.push_back({{env_[at], task_[at]}, int(first_[i + 1] - at), psi_.data() + at * model_.shape.feature, label_.data() + at, taken_.data() + at,
+                        reward_.data() + at});
   }
+  embedding_loss_->add(parallel_, episodes);
+}
+
+Losses Adaptation::through_head(const std::vector<size_t>& drawn) {
+  std::vector<size_t> rows;
+  for (const size_t episode : drawn)
+    for (size_t row = first_[episode]; row < first_[episode + 1]; ++row) rows.push_back(row);
   const int n = int(rows.size()), d = model_.shape.feature;
   std::vector<int> env(n), task(n), label(n), taken(n);
   std::vector<float> reward(n), psi(size_t(n) * d);
@@ -158,8 +175,22 @@ Losses Adaptation::update() {
   logits_.resize(size_t(n) * world_.actions());
   StepBatch<float> batch = {n, nullptr, env.data(), task.data(), label.data(), taken.data(), reward.data()};
   batch.psi = psi.data();
-  const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
-                                            gradient_.data(), logits_.data());
+  return model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(), gradient_.data(), logits_.data());
+}
+
+Losses Adaptation::update() {
+  if (demonstrations() == 0) fail(Exit::kData, "no demonstration to adapt from");
+  compute_features();
+  Random random(seed_, Purpose::kBatch, 0, uint64_t(updates_));
+  std::vector<size_t> drawn;
+  for (int i = 0; i < options_.trajectories; ++i) drawn.push_back(random.below(uint32_t(demonstrations())));
+  Losses losses;
+  if (has_embedding_loss()) {
+    extend_embedding_loss();
+    losses = embedding_loss_->step(parallel_, drawn, options_.losses, model_.parameters.data(), gradient_.data());
+  } else {
+    losses = through_head(drawn);
+  }
   if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
   ++updates_;
   for (const Span& span : learned_)

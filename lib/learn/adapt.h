@@ -1,11 +1,14 @@
 // Adaptation to new environments and tasks (supplement, Section 5.4, settings 2 and 3): their embeddings are learned from a few
 // demonstrations, as in Algorithm 1, while all else stays as it is.
 //
-// New is what no seen pair of the checkpoint has. As the encoder never changes, psi of every demonstrated step is computed once.
+// New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi, and where embeddings alone are
+// learned, all that embedding_loss.h keeps.
 #pragma once
+#include <optional>
 #include <vector>
 
 #include "base/parallel.h"
+#include "learn/embedding_loss.h"
 #include "learn/model.h"
 #include "nn/adam.h"
 
@@ -23,6 +26,8 @@ struct AdaptOptions {
   LossWeights losses;
   double embedding_sd = 0;
   AdaptTargets targets;
+  // For what embedding_loss.h keeps. Where it is not enough, updates go through the whole head, which takes ten times as long.
+  size_t memory_bytes = size_t(2) << 30;
 };
 
 // The same model for a world of more environments: parameters are carried over by environment and task; embeddings of what no seen pair has are
@@ -51,6 +56,10 @@ class Adaptation {
   };
   std::vector<Span> learned() const;
   void compute_features();
+  bool has_embedding_loss() const;
+  void extend_embedding_loss();
+  // Losses of the demonstrations drawn, and gradient_.
+  Losses through_head(const std::vector<size_t>& drawn);
 
   const World& world_;
   Parallel& parallel_;
@@ -66,6 +75,7 @@ class Adaptation {
   std::vector<float> reward_, psi_;
   Buffer<float> gradient_, first_moment_, second_moment_;
   std::vector<float> logits_;
+  std::optional<EmbeddingLoss> embedding_loss_;
   int64_t updates_ = 0;
 };
 

@@ -11,19 +11,6 @@ namespace {
 
 constexpr int kLook = 8;  // lanes that a thread looks at together
 
-// p and log p of softmax(scores); returns the entropy.
-double softmax(const float* scores, int n, double* p, double* log_p) {
-  const double top = *std::max_element(scores, scores + n);
-  double sum = 0, entropy = 0;
-  for (int a = 0; a < n; ++a) sum += p[a] = std::exp(scores[a] - top);
-  for (int a = 0; a < n; ++a) {
-    p[a] /= sum;
-    log_p[a] = scores[a] - top - std::log(sum);
-    entropy -= p[a] * log_p[a];
-  }
-  return entropy;
-}
-
 int draw_action(const double* p, int n, double uniform) {
   for (int a = 0; a + 1 < n; ++a)
     if ((uniform -= p[a]) < 0) return a;
@@ -45,8 +32,8 @@ std::map<std::string, std::string> PpoOptions::describe() const {
           {"ppo.minibatches", concat(minibatches)},
           {"ppo.value-warm-up", concat(value_warm_up)},
           {"ppo.value-hidden", concat(value_hidden)},
-          {"ppo.clip", concat(clip)},
-          {"ppo.entropy", concat(entropy)},
+          {"ppo.clip", concat(clipping.clip)},
+          {"ppo.entropy", concat(clipping.entropy)},
           {"ppo.gradient-norm", concat(gradient_norm)},
           {"ppo.discount", concat(gae.discount)},
           {"ppo.lambda", concat(gae.lambda)},
@@ -60,54 +47,46 @@ std::map<std::string, std::string> PpoOptions::describe() const {
 }
 
 // The gradient of everything but the auxiliary losses, for the rows of a minibatch.
-class Ppo::ClippedObjective : public Objective<float> {
+class Ppo::RolloutObjective : public Objective<float> {
  public:
-  ClippedObjective(Ppo& ppo, const std::vector<int>& rows) : ppo_(ppo), rows_(rows) {}
+  RolloutObjective(Ppo& ppo, const std::vector<int>& rows) : ppo_(ppo), rows_(rows) {}
 
   double apply(Parallel& parallel, int n, const float* psi, const float* logits, float* dlogits, float* dpsi) override {
+    const ClippingOptions& options = ppo_.options_.clipping;
     const Rollout& rollout = ppo_.rollout_;
-    const PpoOptions& options = ppo_.options_;
-    const int d = ppo_.model_.shape.feature, in = ppo_.value_inputs();
-    std::vector<float> x(size_t(n) * in);
-    result = {};
-    result.largest_ratio = result.smallest_ratio = 1;
-    const int actions = ppo_.world_.actions();
-    std::vector<double> p(actions), log_p(actions);
-    for (int i = 0; i < n; ++i) {
-      const int row = rows_[i], a = rollout.action[row];
-      const double entropy = softmax(logits + size_t(i) * actions, actions, p.data(), log_p.data());
-      const double log_ratio = log_p[a] - rollout.log_probability[row], ratio = std::exp(log_ratio), advantage = rollout.advantage[row];
-      const double clipped = std::clamp(ratio, 1 - options.clip, 1 + options.clip);
-      const bool limited = clipped * advantage < ratio * advantage;
-      result.policy -= (limited ? clipped : ratio) * advantage / n;
-      result.entropy += entropy / n;
-      result.kl += (ratio - 1 - log_ratio) / n;
-      result.clip_fraction += double(ratio != clipped) / n;
-      result.largest_ratio = std::max(result.largest_ratio, ratio);
-      result.smallest_ratio = std::min(result.smallest_ratio, ratio);
-      for (int j = 0; j < actions; ++j) {
-        const double along = limited ? 0 : -advantage * ratio * ((j == a) - p[j]);
-        dlogits[size_t(i) * actions + j] = float((along + options.entropy * p[j] * (log_p[j] + entropy)) / n);
-      }
-      ppo_.make_value_input(psi + size_t(i) * d, rollout.env[row], rollout.task[row], x.data() + size_t(i) * in);
-    }
-    const float* value = ppo_.value_->forward(parallel, n, x.data(), ppo_.value_parameters_.data());
-    std::vector<float> dvalue(n), dx(x.size());
-    for (int i = 0; i < n; ++i) {
-      const double error = value[i] - rollout.target[rows_[i]];
-      result.value += 0.5 * error * error / n;
-      dvalue[i] = float(error / n);
-    }
-    std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
-    ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(), ppo_.value_gradient_.data());
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += dx[size_t(i) * in + c];
+    const std::vector<int> action = chosen(rollout.action);
+    const std::vector<float> log_probability = chosen(rollout.log_probability), advantage = chosen(rollout.advantage);
+    static_cast<ClippedLosses&>(result) =
+        clipped_objective({n, action.data(), log_probability.data(), advantage.data()}, options, ppo_.world_.actions(), logits, dlogits);
+    result.value = learn_value(parallel, n, psi, dpsi);
     return result.policy + result.value - options.entropy * result.entropy;
   }
 
   Minibatch result;
 
  private:
+  template <class T>
+  std::vector<T> chosen(const std::vector<T>& values) const {
+    std::vector<T> chosen;
+    for (const int row : rows_) chosen.push_back(values[row]);
+    return chosen;
+  }
+
+  // The value's loss; its gradient to the value's own weights, and dpsi +=.
+  double learn_value(Parallel& parallel, int n, const float* psi, float* dpsi) {
+    const int d = ppo_.model_.shape.feature, in = ppo_.value_inputs();
+    std::vector<float> x(size_t(n) * in), dx(x.size()), dvalue(n);
+    for (int i = 0; i < n; ++i)
+      ppo_.make_value_input(psi + size_t(i) * d, ppo_.rollout_.env[rows_[i]], ppo_.rollout_.task[rows_[i]], x.data() + size_t(i) * in);
+    const float* value = ppo_.value_->forward(parallel, n, x.data(), ppo_.value_parameters_.data());
+    const double loss = value_loss(n, value, chosen(ppo_.rollout_.target).data(), dvalue.data());
+    std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
+    ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(), ppo_.value_gradient_.data());
+    for (int i = 0; i < n; ++i)
+      for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += dx[size_t(i) * in + c];
+    return loss;
+  }
+
   Ppo& ppo_;
   const std::vector<int>& rows_;
 };
@@ -273,7 +252,7 @@ void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
     action[i] = rollout_.action[rows[i]];
     reward[i] = rollout_.reward[rows[i]];
   }
-  ClippedObjective objective(*this, rows);
+  RolloutObjective objective(*this, rows);
   StepBatch<float> batch = {n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
   batch.frozen_statistics = true;
   batch.objective = &objective;

@@ -1,9 +1,8 @@
 // PPO fine-tuning (supplement, Section 3; Schulman et al. 2017): worlds under the learner's own actions, advantages by GAE, the clipped objective.
 //
-//   objective_t = min(ratio A, clip(ratio, 1 - c, 1 + c) A),  ratio = pi(a|s) / pi_old(a|s),  A normalised over the rollout
-//   loss = -mean objective + 1/2 mean (V - return)^2 - entropy weight * mean entropy + the auxiliary losses of imitation, at the action taken
+//   loss = the clipped objective's and the value's (clipped_objective.h) + the auxiliary losses of imitation, at the action taken
 //
-// Normalisation keeps the statistics that it came with, so that the first minibatch behind a rollout has ratio 1. The value V is a perceptron over
+// Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the first minibatch behind a rollout has ratio 1. The value V is a perceptron over
 // [psi, e_env, e_task], whose gradient reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
 #pragma once
 #include <memory>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "learn/clipped_objective.h"
 #include "learn/gae.h"
 #include "learn/lanes.h"
 #include "learn/model.h"
@@ -24,7 +24,8 @@ struct PpoOptions {
   int epochs = 4, minibatches = 4;    // over a rollout
   int value_warm_up = 20;             // first rollouts, in which the value alone learns
   int value_hidden = 512;
-  double clip = 0.1, entropy = 0.01, gradient_norm = 0.5;
+  ClippingOptions clipping;
+  double gradient_norm = 0.5;
   GaeOptions gae;
   RmsPropOptions optimiser;
   LossWeights losses;                 // the auxiliary ones
@@ -58,13 +59,13 @@ class Ppo {
   Checkpoint checkpoint(bool with_training_state) const;
 
   // Of one minibatch; first_minibatch() is the first behind the last rollout.
-  struct Minibatch {
-    double policy = 0, value = 0, entropy = 0, kl = 0, clip_fraction = 0, largest_ratio = 0, smallest_ratio = 0;
+  struct Minibatch : ClippedLosses {
+    double value = 0;
   };
   const Minibatch& first_minibatch() const { return first_; }
 
  private:
-  class ClippedObjective;
+  class RolloutObjective;
   struct Rollout {
     std::vector<uint8_t> observations;
     std::vector<int> env, task, action;

@@ -6,9 +6,11 @@
 #include "nn/adam.h"
 #include "nn/buffer.h"
 #include "nn/dense.h"
+#include "nn/frozen_perceptron.h"
 #include "nn/layout.h"
 #include "nn/loss.h"
 #include "nn/norm.h"
+#include "nn/perceptron.h"
 #include "numbers.h"
 
 namespace synpo {
@@ -175,6 +177,29 @@ TEST(Dense, BackwardIsFiniteDifferences) {
       for (size_t i = 0; i < dw.size(); i += 5) ASSERT_NEAR(dw[i], central_difference(run.w[i], 1e-7, loss) + 2, 1e-6);
       for (size_t i = 0; i < db.size(); ++i) ASSERT_NEAR(db[i], central_difference(run.b[i], 1e-7, loss) + 3, 1e-6);
     }
+}
+
+TEST(FrozenPerceptron, IsThePerceptron) {
+  constexpr int kRows = 5, kIn = 3, kHidden = 7, kOut = 4;
+  Parallel parallel(1);
+  Layout layout;
+  layout.add("before", {20});
+  Perceptron<double> moving("p", kIn, kHidden, kOut, layout);
+  const std::vector<double> parameters = random_values<double>(layout.total(), 1), x = random_values<double>(kRows * kIn, 2);
+  const FrozenPerceptron<double> frozen("p", layout, parameters.data());
+  ASSERT_EQ(frozen.in(), kIn);
+  ASSERT_EQ(frozen.hidden(), kHidden);
+  ASSERT_EQ(frozen.out(), kOut);
+  std::vector<double> h(kRows * kHidden), y(kRows * kOut), dh(h.size()), gradient(layout.total(), 0), dy = random_values<double>(y.size(), 3);
+  frozen.forward(kRows, x.data(), h.data(), y.data());
+  const double* want = moving.forward(parallel, kRows, x.data(), parameters.data());
+  EXPECT_LT(relative_error(y.data(), want, y.size()), 1e-14);
+  for (const bool add : {false, true}) {
+    std::vector<double> dx(x.size(), 1), want_dx(x.size(), 1);
+    frozen.backward(kRows, h.data(), dy.data(), dh.data(), dx.data(), add);
+    moving.backward(parallel, x.data(), dy.data(), want_dx.data(), add, parameters.data(), gradient.data());
+    EXPECT_LT(relative_error(dx, want_dx), 1e-14) << add;
+  }
 }
 
 TEST(CrossEntropy, IsFiniteDifferences) {
