@@ -5,12 +5,11 @@
 #include <string>
 
 #include "world/kitchen_view.h"
+#include "world/world.h"
 
 namespace synpo {
 
-constexpr int kViewFeatures = 2048;
-constexpr int kHandFloats = 16;  // the object in the hand, and zeros
-constexpr size_t kKitchenObservation = 4 * kViewFeatures + kHandFloats;  // floats
+constexpr size_t kKitchenObservation = kHistory * kViewFeatures + kHandFloats;  // floats
 
 // The features of a view, which stay until the thread's next call. Recent views are kept per thread; what comes out does not depend on that.
 const float* view_features(const KitchenScene& scene, const KitchenFrame& frame);

@@ -339,7 +339,7 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
     });
   };
   EXPECT_EQ(refused([](Checkpoint&) {}), "nothing thrown");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.world = "kitchen"; }), "65 world 'kitchen', this build has gridworld");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.world = "house"; }), "65 world 'house', this build has gridworld and kitchen");
   EXPECT_EQ(refused([](Checkpoint& c) { c.rules = 2; }), "65 rules version 2, this build has 1");
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs[1].hash ^= 1; }), "65 env 'map2': content and hash differ");
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs[1].name = "map1"; }), "65 two environments are named 'map1'");
