@@ -105,9 +105,10 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .real(0, "smoothing", "X", "decay of its mean square", ppo.optimiser.smoothing, 0, 1)
       .real(0, "epsilon", "X", "RMSProp's epsilon", ppo.optimiser.epsilon, 0, 1)
       .real(0, "weight-decay", "X", "L2 term added to the gradient", ppo.optimiser.weight_decay, 0, 1)
-      .real(0, "reward-loss", "X", "weight of reward prediction", ppo.losses.reward, 0, 1e6)
-      .real(0, "env-loss", "X", "weight of environment disentanglement", ppo.losses.env, 0, 1e6)
-      .real(0, "task-loss", "X", "weight of task disentanglement", ppo.losses.task, 0, 1e6);
+      .real(0, "value-loss", "X", "weight of the value's loss", ppo.value_loss, 0, 1e6)
+      .real(0, "reward-loss", "X", "weight of reward prediction (the checkpoint's)", ppo.losses.reward, 0, 1e6)
+      .real(0, "env-loss", "X", "weight of environment disentanglement (the checkpoint's)", ppo.losses.env, 0, 1e6)
+      .real(0, "task-loss", "X", "weight of task disentanglement (the checkpoint's)", ppo.losses.task, 0, 1e6);
 }
 
 }  // namespace
@@ -131,6 +132,10 @@ int ppo(int argc, char** argv) {
   catch_stop_signals();
   Parallel parallel{int(s.threads)};
   const Checkpoint from = resumes ? load_checkpoint(s.resume) : random ? Checkpoint() : load_checkpoint(s.checkpoint);
+  const LossWeights weights = auxiliary_losses(from, tuning.losses);
+  if (!options.given("reward-loss")) tuning.losses.reward = weights.reward;
+  if (!options.given("env-loss")) tuning.losses.env = weights.env;
+  if (!options.given("task-loss")) tuning.losses.task = weights.task;
   const bool fresh = random && !resumes;
   const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from);
   const World& world = *opened;
