@@ -1,12 +1,10 @@
 #!/usr/bin/python3
-"""The learning of synpo in PyTorch, by imitation and by PPO: the reference of the C++ engine.
+"""The imitation-learning step of synpo in PyTorch: the reference of the C++ engine.
 
   torch_reference.py dump -o FILE [--method NAME] [--batch N] [--seed S] [widths]
       one training step in float64 on a random model and batch, as safetensors
   torch_reference.py check FILE
       the same step in float32 from the file's parameters and inputs, against the file's results
-  torch_reference.py ppo -o FILE [--seed S]
-      what PPO is made of, in float64: advantages, the clipped loss and its gradients, RMSProp
   torch_reference.py bench --mode train|forward --batch N --threads T [--seconds S]
       states per second in float32 at full width, one number on stdout
   torch_reference.py committed -o tests/data
@@ -507,91 +505,6 @@ def check(args):
         sys.exit("torch_reference: float32 and the file disagree")
 
 
-# --- ppo -----------------------------------------------------------------------------------------
-
-GOES_ON, TERMINATED, TRUNCATED = range(3)
-GAMMA, LAMBDA = 0.99, 0.95
-CLIP, ENTROPY_WEIGHT, GRADIENT_NORM = 0.1, 0.01, 0.5
-RMSPROP = dict(lr=0.01, alpha=0.99, eps=1e-8, weight_decay=0.1)
-
-
-def advantages(reward, value, end, cut_value, last_value):
-    """By the definition: the sum of (gamma lambda)^l delta_(t+l) up to the episode's end."""
-    next_value = torch.cat([value[1:], last_value[None]])
-    next_value = torch.where(end == TRUNCATED, cut_value, next_value) * (end != TERMINATED)
-    delta = reward + GAMMA * next_value - value
-    result = torch.zeros_like(delta)
-    for t, lane in itertools.product(*map(range, delta.shape)):
-        for later in range(t, len(delta)):
-            result[t, lane] += (GAMMA * LAMBDA) ** (later - t) * delta[later, lane]
-            if end[later, lane] != GOES_ON:
-                break
-    return result
-
-
-def advantage_results(rng, steps=9, lanes=3):
-    """Lane 0 ends twice, lane 1 is cut and then ends with the rollout, lane 2 goes on."""
-    end = np.zeros((steps, lanes), np.uint8)
-    end[2, 0] = end[6, 0] = end[steps - 1, 1] = TERMINATED
-    end[4, 1] = TRUNCATED
-    draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
-    given = dict(reward=draw(steps, lanes), value=draw(steps, lanes), end=end, cut_value=draw(steps, lanes), last_value=draw(lanes))
-    tensors = {name: torch.from_numpy(array if name == "end" else array.astype(np.float64)) for name, array in given.items()}
-    return {**given, "advantage": advantages(**tensors).numpy()}
-
-
-def ppo_losses(logits, action, old_log_probability, advantage, value, target):
-    """Mean -objective, half-squared error of the value, and entropy."""
-    distribution = torch.distributions.Categorical(logits=logits)
-    ratio = (distribution.log_prob(action) - old_log_probability).exp()
-    objective = torch.min(ratio * advantage, ratio.clamp(1 - CLIP, 1 + CLIP) * advantage)
-    return -objective.mean(), 0.5 * F.mse_loss(value, target), distribution.entropy().mean(), ratio
-
-
-def clipped_results(rng, count=24):
-    """Ratios below, within and above the clip, for advantages of both signs, and off its edges by more than float32 rounds."""
-    draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
-    logits, action = draw(count, ACTIONS), rng.integers(0, ACTIONS, count)
-    wanted = np.resize((0.6, 0.87, 0.93, 1.06, 1.13, 1.7), count) * rng.uniform(0.99, 1.01, count)
-    advantage = np.abs(draw(count)) * np.where(np.arange(count) // 6 % 2, 1, -1).astype(np.float32)
-    log_probability = F.log_softmax(torch.from_numpy(logits).double(), 1)[torch.arange(count), torch.from_numpy(action)].numpy()
-    given = dict(logits=logits, action=action, old_log_probability=(log_probability - np.log(wanted)).astype(np.float32),
-                 advantage=advantage, predicted=draw(count), target=draw(count))
-    tensors = {name: torch.from_numpy(array.astype(np.float64) if array.dtype == np.float32 else array) for name, array in given.items()}
-    leaves = [tensors[name].requires_grad_() for name in ("logits", "predicted")]
-    policy, value, entropy, ratio = ppo_losses(*tensors.values())
-    (policy + value - ENTROPY_WEIGHT * entropy).backward()
-    extremes = [(ratio - 1 - ratio.log()).mean(), ((ratio - 1).abs() > CLIP).double().mean(), ratio.max(), ratio.min()]
-    return {**given, "losses": np.array([x.item() for x in (policy, value, entropy, *extremes)]),
-            "dlogits": leaves[0].grad.numpy(), "dpredicted": leaves[1].grad.numpy()}
-
-
-def rmsprop_results(rng, steps=3):
-    """Gradients of two tensors, of which the last step's together are shorter than the clip."""
-    draw = lambda *shape: rng.normal(size=shape)
-    parameters = [nn.Parameter(torch.from_numpy(draw(count))) for count in (7, 4)]
-    gradients = draw(steps, 11) * np.array([1, 3, 0.05])[:, None]
-    joined = lambda tensors: torch.cat(tensors).detach().numpy().copy()
-    start, after = joined(parameters), []
-    optimiser = torch.optim.RMSprop(parameters, **RMSPROP)
-    for gradient in torch.from_numpy(gradients):
-        for parameter, part in zip(parameters, gradient.split((7, 4))):
-            parameter.grad = part.clone()
-        nn.utils.clip_grad_norm_(parameters, GRADIENT_NORM)
-        optimiser.step()
-        after.append(joined(parameters))
-    square = joined([optimiser.state[parameter]["square_avg"] for parameter in parameters])
-    return dict(parameter=start, gradient=gradients, after=np.stack(after), square=square)
-
-
-def ppo(args):
-    rng = np.random.default_rng(args.seed)
-    parts = dict(gae=advantage_results(rng), clip=clipped_results(rng), rmsprop=rmsprop_results(rng))
-    tensors = {f"{part}.{name}": array for part, results in parts.items() for name, array in results.items()}
-    metadata = dict(discount=GAMMA, **{"lambda": LAMBDA}, clip=CLIP, entropy=ENTROPY_WEIGHT, gradient_norm=GRADIENT_NORM, **RMSPROP)
-    write_safetensors(args.output, tensors, {key: str(value) for key, value in metadata.items()})
-
-
 # --- bench ---------------------------------------------------------------------------------------
 
 def fast_blas():
@@ -648,37 +561,52 @@ def step_times(step, seconds):
     return times
 
 
-def bench(args):
+def prepare(threads):
+    """Sets PyTorch up to be as fast as it can be."""
     if not fast_blas():
         sys.exit("torch_reference: PyTorch runs on the reference BLAS, no fair comparison; install libopenblas0-openmp")
     # Keeps freed memory (no mmap, no trimming): fresh pages in every step would cost PyTorch some 7 %.
     libc = ctypes.CDLL(None)
     for option, value in ((-4, 0), (-1, 2**31 - 1), (-2, 1 << 26)):  # M_MMAP_MAX, M_TRIM_THRESHOLD, M_TOP_PAD
         libc.mallopt(option, value)
-    torch.set_num_threads(args.threads)
+    torch.set_num_threads(threads)
     torch.set_flush_denormal(True)
+
+
+def fastest(options, seconds):
+    """Of each option, given with its values, the one with which seconds(**choice) is least: one after the other, as they hardly
+    depend on each other."""
+    choice = {key: values[0] for key, values in options.items()}
+    best = seconds(**choice)
+    for key, values in options.items():
+        for value in values[1:]:
+            kept, choice[key] = choice[key], value
+            tried = seconds(**choice)
+            if tried < best:
+                best = tried
+            else:
+                choice[key] = kept
+    return choice
+
+
+def report(states, times, choice):
+    print("torch", torch.__version__, *(f"{key}={value}" for key, value in choice.items()), f"best={states / min(times):.0f}", file=sys.stderr)
+    print(f"{states / statistics.median(times):.0f}")
+
+
+# What the fastest way may depend on.
+OPTIONS = dict(memory_format=("channels_last", "contiguous"), head=("by_sum", "by_bmm", "by_matrix"))
+
+
+def bench(args):
+    prepare(args.threads)
     rng = np.random.default_rng(0)
     net = SynPo(SimpleNamespace(**FULL))
     randomise(net, torch.Generator().manual_seed(0))
     batches = [to_torch(random_batch(args.batch, 20, 20, rng, pairs=144), torch.float32) for _ in range(2)]
-
-    options = dict(memory_format=("channels_last", "contiguous"), head=("by_sum", "by_bmm", "by_matrix"),
-                   foreach=(True, False) if args.mode == "train" else (None,))
-    choice = {key: values[0] for key, values in options.items()}
-    trial = lambda: min(step_times(make_step(args.mode, copy.deepcopy(net), batches, **choice), 0.5))
-    best = trial()
-    for key, values in options.items():  # one after the other: they hardly depend on each other
-        for value in values[1:]:
-            kept, choice[key] = choice[key], value
-            seconds = trial()
-            if seconds < best:
-                best = seconds
-            else:
-                choice[key] = kept
-    times = step_times(make_step(args.mode, net, batches, **choice), args.seconds)
-    print("torch", torch.__version__, *(f"{key}={value}" for key, value in choice.items()),
-          f"best={args.batch / min(times):.0f}", file=sys.stderr)
-    print(f"{args.batch / statistics.median(times):.0f}")
+    options = dict(OPTIONS, foreach=(True, False) if args.mode == "train" else (None,))
+    choice = fastest(options, lambda **choice: min(step_times(make_step(args.mode, copy.deepcopy(net), batches, **choice), 0.5)))
+    report(args.batch, step_times(make_step(args.mode, net, batches, **choice), args.seconds), choice)
 
 
 def parse(arguments):
@@ -700,9 +628,6 @@ def parse(arguments):
             p.add_argument("--" + name.replace("_", "-"), type=int)
     p = commands.add_parser("committed")
     p.add_argument("-o", "--output", required=True, help="folder")
-    p = commands.add_parser("ppo")
-    p.add_argument("-o", "--output", required=True)
-    p.add_argument("--seed", type=int, default=1)
     p = commands.add_parser("check")
     p.add_argument("file")
     p = commands.add_parser("bench")
@@ -716,12 +641,11 @@ def parse(arguments):
 def committed(args):
     for name, options in COMMITTED.items():
         dump(parse(["dump", "-o", f"{args.output}/torch_{name}.safetensors", *options.split()]))
-    ppo(parse(["ppo", "-o", f"{args.output}/torch_ppo.safetensors"]))
 
 
 def main():
     args = parse(sys.argv[1:])
-    {"dump": dump, "ppo": ppo, "committed": committed, "check": check, "bench": bench}[args.command](args)
+    {"dump": dump, "committed": committed, "check": check, "bench": bench}[args.command](args)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 //   synpo-bench rows                     TSV rows name, value, unit of everything but the step
 //   synpo-bench methods                  the rows of these that compare methods, and those of the head
 //   synpo-bench train|forward B THREADS  states per second of the Table 2 network at batch B
+//   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
 //
 // train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
 // head_FORM_ACTIONS_train and _infer are the bilinear head alone, d = K = 128, 512 states of 144 pairs. `direct` composes A d K a pair and
@@ -19,6 +20,7 @@
 #include "base/random.h"
 #include "learn/episode.h"
 #include "learn/model.h"
+#include "learn/ppo.h"
 #include "learn/recipe.h"
 #include "learn/running_episode.h"
 #include "learn/steps.h"
@@ -112,6 +114,24 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
                    logits.data() + size_t(range.begin) * kGridActions);
     });
   });
+}
+
+double ppo_rate(int threads) {
+  const GridSet world = GridSet::open("gridworld");
+  Parallel parallel(threads);
+  Model model;
+  model.method = "synpo";
+  model.shape = recipe(kDefaultRecipe).shape(world);
+  for (int i = 0; i < 144; ++i) model.seen.push_back({i % 20, (i + 3 * (i / 20)) % 20});
+  model.policy = make_policy(model.method, model.shape);
+  model.parameters.grow(model.policy->parameters().total());
+  model.statistics.grow(model.policy->statistics().total());
+  model.policy->initialise({}, model.parameters.data(), model.statistics.data());
+  PpoOptions options;
+  options.value_warm_up = 0;
+  Ppo ppo(world, parallel, std::move(model), options, 1);
+  ppo.measure_statistics(4);
+  return rate(options.lanes * options.rollout, 8, [&] { ppo.update(); });
 }
 
 void row(const char* name, double value, const char* unit) { std::printf("%s\t%.6g\t%s\n", name, value, unit); }
@@ -305,11 +325,15 @@ int main(int argc, char** argv) {
     std::printf("%.0f\n", network_rate(what == "train", std::atoi(argv[2]), std::atoi(argv[3])));
     return 0;
   }
+  if (argc == 3 && what == "ppo") {
+    std::printf("%.0f\n", ppo_rate(std::atoi(argv[2])));
+    return 0;
+  }
   if (argc == 2 && what == "rows") return rows();
   if (argc == 2 && what == "methods") {
     method_rows(Parallel().threads());
     return 0;
   }
-  std::fputs("usage: synpo-bench rows | methods | train BATCH THREADS | forward BATCH THREADS\n", stderr);
+  std::fputs("usage: synpo-bench rows | methods | train BATCH THREADS | forward BATCH THREADS | ppo THREADS\n", stderr);
   return 64;
 }
