@@ -11,7 +11,6 @@ import argparse
 import copy
 import itertools
 import sys
-from types import SimpleNamespace
 
 sys.dont_write_bytecode = True  # no __pycache__ among the scripts
 import torch_reference as reference  # before numpy and torch, whose environment it sets
@@ -19,8 +18,8 @@ import numpy as np
 import torch
 from torch import nn
 from torch.nn import functional as F
-from torch_reference import ACTIONS
 
+ACTIONS = reference.ACTIONS["pictures"]
 GOES_ON, TERMINATED, TRUNCATED = range(3)
 LANES, ROLLOUT, EPOCHS, MINIBATCHES = 16, 128, 4, 4
 GAMMA, LAMBDA = 0.99, 0.95
@@ -178,21 +177,21 @@ class Learner:
                 self.learn({name: tensor[rows] for name, tensor in steps.items()})
 
 
-def random_worlds(count, rng):
+def random_worlds(count, w, rng):
     """What the lanes meet: an episode ends after 40 steps or so."""
-    batch = reference.to_torch(reference.random_batch(count, 20, 20, rng, pairs=144), torch.float32)
+    batch = reference.to_torch(reference.random_batch(count, w, rng, pairs=144), torch.float32)
     ends = np.where(rng.random(count) < 1 / 40, TERMINATED, GOES_ON).astype(np.uint8)
     return dict({name: batch[name] for name in ("input", "env", "task", "reward")}, end=torch.from_numpy(ends))
 
 
 def bench(args):
     reference.prepare(args.threads)
-    net = reference.SynPo(SimpleNamespace(**reference.FULL))
+    net = reference.SynPo(reference.widths(reference.FULL["pictures"], "pictures"))
     reference.randomise(net, torch.Generator().manual_seed(0))
-    worlds = random_worlds(ROLLOUT * LANES, np.random.default_rng(0))
+    worlds = random_worlds(ROLLOUT * LANES, net.w, np.random.default_rng(0))
     # A quarter of an update, with minibatches of the same size.
     trial = lambda **choice: min(reference.step_times(Learner(copy.deepcopy(net), worlds, **choice, rollout=ROLLOUT // 4, minibatches=1).update, 0.5))
-    choice = reference.fastest(dict(reference.OPTIONS, foreach=(True, False)), trial)
+    choice = reference.fastest(dict(reference.OPTIONS["pictures"], foreach=(True, False)), trial)
     reference.report(ROLLOUT * LANES, reference.step_times(Learner(net, worlds, **choice).update, args.seconds), choice)
 
 
