@@ -102,6 +102,7 @@ TEST(Kitchen, RefusesHostileText) {
   EXPECT_EQ(error(with("tt", "t@")), "k.txt: line 6, column 5: found '@', expected one of # . c t F M S");
   EXPECT_EQ(error(with("tt", std::string("t\0", 2))), "k.txt: line 6, column 5: found '\\x00', expected one of # . c t F M S");
   EXPECT_EQ(error(with("#..tt...##\n#..tt...", "#ccttccc##\n#ccttccc")), "k.txt: some floor cells cannot be reached from the others");
+  EXPECT_EQ(error(with("SSSc", "SScc")), "k.txt: the cells of the Sink ('S') are not one rectangle of at most 4 x 4");
   EXPECT_EQ(error(with("tt", "tS")), "k.txt: the cells of the Sink ('S') are not one rectangle of at most 4 x 4");
   EXPECT_EQ(error(with("FFcSSSc#\n#cFF", "cccSSSc#\n#ccc")), "k.txt: found no 'F', expected a Fridge");
   // A Fridge behind walls that nobody can open.

@@ -67,6 +67,8 @@ TEST(KitchenRay, MeetsThingsWhereTheyStand) {
   expect({0, 1, -6.2f}, Material::kTable, Face::kNorth, 0.5f);
   expect({0.1f, 1, -7.5f}, Material::kFloor, Face::kTop, 0.8f);  // between its legs
   expect({1.5f, -2.5f, -3}, Material::kSink, Face::kTop, 3.04f / 3);
+  expect({2, -1.57f, -2.4f}, Material::kSink, Face::kTop, 1);           // its rim
+  expect({-1.4f, 0.6f, -5}, Material::kTable, Face::kEast, 1.3f / 1.4f);  // a leg
   expect({0, 4.5f, -2}, Material::kMicrowave, Face::kNorth, 3.62f / 4.5f);
 }
 
@@ -165,6 +167,37 @@ TEST(KitchenView, AnObjectIsDrawnInItsColourWhereItLies) {
   }
 }
 
+TEST(KitchenView, AnObjectStandsOutAboveItsCounter) {
+  const KitchenScene scene(small_kitchen());
+  KitchenFrame frame;
+  frame.eye = {7, 1, 0, 0};
+  frame.objects[1] = int16_t(scene_cell(2, 1));
+  // The Lettuce from five cells away: its front, 4.76 cells ahead, up to 1.72 below the eye, where the ray passes its cell above the counter.
+  const Picture rgb = picture(scene, frame, 101);
+  const uint8_t* pixel = rgb.data() + (int(50.5f + 50.5f * (1.8f / 4.76f) / kViewSlope) * 101 + 50) * 3;
+  EXPECT_GT(pixel[1], 3 * pixel[0]);
+  EXPECT_GT(pixel[1], 3 * pixel[2]);
+}
+
+TEST(KitchenView, AnOpenDoorShowsADarkInside) {
+  const KitchenScene scene(small_kitchen());
+  for (const int receptacle : {kFridge, kMicrowave}) {
+    KitchenFrame frame;
+    frame.eye = receptacle == kFridge ? KitchenPose{7, 2, 0, 0} : KitchenPose{4, 4, 180, 0};
+    const auto dark_pixels = [&] {
+      const Picture rgb = picture(scene, frame, 101);
+      int dark = 0;
+      for (size_t at = 0; at < rgb.size(); at += 3) dark += rgb[at] < 24 && rgb[at + 1] < 24 && rgb[at + 2] < 24;
+      return dark;
+    };
+    EXPECT_EQ(dark_pixels(), 0);
+    frame.doors = uint8_t(1 << receptacle);
+    EXPECT_GT(dark_pixels(), receptacle == kFridge ? 600 : 150);
+    frame.doors = uint8_t(3 - frame.doors);
+    EXPECT_EQ(dark_pixels(), 0);
+  }
+}
+
 TEST(KitchenView, ColoursDiffer) {
   std::vector<Colour> strong(kReceptacleColours.begin(), kReceptacleColours.end());
   for (const auto& object : kObjectColours) strong.push_back(object[0]);
@@ -253,6 +286,24 @@ TEST(KitchenFeatures, DoNotDependOnWhatIsKeptNorOnThreads) {
     });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(wrong, std::vector<int>(4, 0));
+}
+
+// Frames that are alike in many kitchens.
+TEST(KitchenFeatures, AreOfTheirOwnKitchen) {
+  int views = 0;
+  for (int16_t row = 4; row < 8; ++row)
+    for (int16_t heading = 0; heading < 360; heading += 90)
+      for (uint8_t doors = 0; doors < kDoorStates; ++doors)
+        for (int env = 0; env < world().envs(); ++env) {
+          if (pose_at(world().tables(env), row, 5, heading, 0) < 0) continue;
+          KitchenFrame frame;
+          frame.eye = {row, 5, heading, 0};
+          frame.doors = doors;
+          const float* features = view_features(world().scene(env), frame);
+          ASSERT_TRUE(std::equal(features, features + kViewFeatures, features_of(small_picture(world().scene(env), frame)).begin()));
+          ++views;
+        }
+  EXPECT_GT(views, 500);
 }
 
 TEST(KitchenSet, ObservesTheLastFourViewsAndTheHand) {
