@@ -1,5 +1,5 @@
 // The built-in extractor of features: a view of 32 x 32 pixels, cut into 8 x 8 cells of 4 x 4, and for every cell the mean over its pixels of 32 responses
-// relu(w_c . rgb + b_c), rgb in [0, 1], with fixed w and b. Features stand by cell, row by row, and within it by response.
+// relu(w_c . rgb + b_c), rgb in [0, 1], with fixed w and b, computed in integers of 16 bits. Features stand by cell, row by row, and within it by response.
 #pragma once
 #include <cstddef>
 #include <cstdint>
