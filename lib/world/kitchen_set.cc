@@ -126,15 +126,16 @@ WorldState KitchenSet::start_state(int env, const StartPlaces& places) const {
   if (!found) fail(Exit::kData, "'", kViewField, "': found heading ", heading, ", horizon ", horizon, ", with which no episode starts");
   for (size_t i = 0; i < kKitchenObjects; ++i) {
     const auto [slot_row, slot_column] = field(places, kKitchenObjectNames[i]);
-    const auto where = [&] { return concat("'", kKitchenObjectNames[i], "': found row ", slot_row, ", column ", slot_column, ", "); };
-    const auto slot = std::find_if(all.slots.begin(), all.slots.end(), [&](const KitchenCell& cell) { return cell.row == slot_row && cell.column == slot_column; });
-    if (slot == all.slots.end()) fail(Exit::kData, where(), "where no object can lie");
+    const std::string where = concat("'", kKitchenObjectNames[i], "': found row ", slot_row, ", column ", slot_column, ", ");
+    const auto slot = std::find_if(all.slots.begin(), all.slots.end(),
+                                   [&, r = slot_row, c = slot_column](const KitchenCell& cell) { return cell.row == r && cell.column == c; });
+    if (slot == all.slots.end()) fail(Exit::kData, where, "where no object can lie");
     state.slots[i] = uint8_t(slot - all.slots.begin());
     if (std::find(state.slots.begin(), state.slots.begin() + int(i), state.slots[i]) != state.slots.begin() + int(i))
-      fail(Exit::kData, where(), "where another object lies");
+      fail(Exit::kData, where, "where another object lies");
   }
   for (const auto& [name, place] : places)
-    if (name != kAgentField && name != kViewField && std::find(kKitchenObjectNames, kKitchenObjectNames + kKitchenObjects, name) == kKitchenObjectNames + kKitchenObjects)
+    if (name != kAgentField && name != kViewField && std::count(kKitchenObjectNames, kKitchenObjectNames + kKitchenObjects, name) == 0)
       fail(Exit::kData, "found ", quoted(name), ", expected agent, view and the seven objects");
   return pack(state);
 }
