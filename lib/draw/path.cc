@@ -19,24 +19,18 @@ struct Move {
   Point direction, aside;
 };
 
-std::vector<Move> moves_of(const std::vector<uint8_t>& cells, double cell) {
+std::vector<Move> moves_of(const PlanPlace& place, const std::vector<int>& cells) {
   std::map<std::pair<int, int>, int> passed;
   std::vector<Move> moves;
   for (size_t i = 1; i < cells.size(); ++i) {
     const int from = cells[i - 1], to = cells[i];
     if (from == to) continue;
     const int lane = passed[std::minmax(from, to)]++ % kPathLanes;
-    const double offset = (lane % 2 ? 1 : -1) * ((lane + 1) / 2) * kLaneShare * cell;
-    const double dx = to % kGridSide - from % kGridSide, dy = to / kGridSide - from / kGridSide;
+    const double offset = (lane % 2 ? 1 : -1) * ((lane + 1) / 2) * kLaneShare * place.cell;
+    const double dx = to % place.columns - from % place.columns, dy = to / place.columns - from / place.columns;
     moves.push_back({int(i), {dx, dy}, {std::abs(dy) * offset, std::abs(dx) * offset}});
   }
   return moves;
-}
-
-void draw_arrowhead(Canvas& canvas, Point tip, Point direction, double size, Rgb colour) {
-  const Point back = {tip.x - direction.x * size, tip.y - direction.y * size};
-  const Point across = {-direction.y * size * 0.6, direction.x * size * 0.6};
-  canvas.polygon({tip, {back.x + across.x, back.y + across.y}, {back.x - across.x, back.y - across.y}}, colour);
 }
 
 void draw_piece(Canvas& canvas, Point a, Point b, double width, Rgb colour) {
@@ -53,8 +47,16 @@ Rgb time_colour(double share) {
   return ramp_colour({90 + 215 * share, 0.15}, 0.22 + 0.78 * share);
 }
 
-std::vector<PathCorner> path_corners(const MazePlace& place, const std::vector<uint8_t>& cells) {
-  const std::vector<Move> moves = moves_of(cells, place.cell);
+Rgb step_colour(int step, int steps) { return time_colour(steps > 1 ? double(step - 1) / (steps - 1) : 1); }
+
+void draw_arrowhead(Canvas& canvas, Point tip, Point direction, double size, Rgb colour) {
+  const Point back = {tip.x - direction.x * size, tip.y - direction.y * size};
+  const Point across = {-direction.y * size * 0.6, direction.x * size * 0.6};
+  canvas.polygon({tip, {back.x + across.x, back.y + across.y}, {back.x - across.x, back.y - across.y}}, colour);
+}
+
+std::vector<PathCorner> path_corners(const PlanPlace& place, const std::vector<int>& cells) {
+  const std::vector<Move> moves = moves_of(place, cells);
   std::vector<PathCorner> corners = {{place.centre(cells[0]), 0}};
   const auto add = [&](Point middle, Point aside, Point along, double share, int step) {
     corners.push_back({{middle.x + aside.x + along.x * share * place.cell, middle.y + aside.y + along.y * share * place.cell}, step});
@@ -82,14 +84,14 @@ std::vector<PathCorner> path_corners(const MazePlace& place, const std::vector<u
   return corners;
 }
 
-void draw_path(Canvas& canvas, const MazePlace& place, const std::vector<uint8_t>& cells, int steps) {
+void draw_path(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells, int steps, Rgb ground) {
   const std::vector<PathCorner> corners = path_corners(place, cells);
   const double line = std::max(1.5, kLineShare * place.cell), casing = std::max(line + 1, kCasingShare * place.cell);
-  const auto colour = [&](size_t i) { return time_colour(steps > 1 ? double(corners[i].step - 1) / (steps - 1) : 1); };
+  const auto colour = [&](size_t i) { return step_colour(corners[i].step, steps); };
   // A piece's casing comes just before it, so that a later way is seen to cross an earlier one; its beginning is drawn over by
   // the piece before it once more, lest the casing cut that one's end.
   for (size_t i = 1; i < corners.size(); ++i) {
-    draw_piece(canvas, corners[i - 1].at, corners[i].at, casing, kPaperFloor);
+    draw_piece(canvas, corners[i - 1].at, corners[i].at, casing, ground);
     if (i > 1) draw_piece(canvas, corners[i - 2].at, corners[i - 1].at, line, colour(i - 1));
     draw_piece(canvas, corners[i - 1].at, corners[i].at, line, colour(i));
   }
