@@ -12,7 +12,7 @@ constexpr double kTextPt = 9;
 }  // namespace
 
 HistoryRow::HistoryRow(int width, int unit, const Pixels& px)
-    : px_(px), gap_(px(8)), side_(std::max(1, (width - (kHistory - 1) * gap_) / kHistory / unit) * unit) {}
+    : px_(px), side_(std::max(1, (width - (kHistory - 1) * px(8)) / kHistory / unit) * unit), gap_((width - kHistory * side_) / (kHistory - 1)) {}
 
 int HistoryRow::height() const { return px_(kTextPt) + px_(8) + side_ + px_(6) + px_(kTextPt); }
 

@@ -18,7 +18,7 @@ class HistoryRow {
 
  private:
   Pixels px_;
-  int gap_, side_;
+  int side_, gap_;
 };
 
 }  // namespace synpo
