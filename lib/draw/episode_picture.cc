@@ -1,7 +1,6 @@
 #include "draw/episode_picture.h"
 
 #include <algorithm>
-#include <array>
 
 #include "base/error.h"
 #include "draw/agent_view.h"
@@ -44,30 +43,6 @@ Sign on_treasure(int treasure, Sign mark) {
   };
 }
 
-std::array<int, kGridCells> moments_in(const std::vector<int>& cells) {
-  std::array<int, kGridCells> moments = {};
-  for (const int cell : cells) ++moments[cell];
-  return moments;
-}
-
-// Size of the numbers in the cells; 0 where they could not be read.
-int count_size(int cell) { return cell / 3 < 8 ? 0 : cell / 3; }
-
-// How many moments the agent was there, in a corner of the cells where the path cannot tell.
-void draw_counts(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells) {
-  const auto moments = moments_in(cells);
-  const int size = count_size(place.cell);
-  if (size == 0) return;
-  for (int cell = 0; cell < kGridCells; ++cell) {
-    if (moments[cell] <= kPathLanes) continue;
-    const Box box = place.box(cell);
-    const std::string text = concat(moments[cell], "\u00d7");
-    const int width = canvas.font().width(text, size) + 2, height = canvas.font().digit_height(size) + 3;
-    canvas.fill({box.right() - width - 1, box.bottom() - height - 1, width, height}, kPaper);
-    canvas.text(box.right() - 2, box.bottom() - 3, text, size, kInk, Across::kRight, Upright::kBaseline);
-  }
-}
-
 // Maze, way, start, treasures and what became of them, up to a moment.
 void draw_way(Canvas& canvas, const PlanPlace& place, const Film& film, int moment, bool with_agent) {
   const std::vector<int> cells = cells_up_to(film, moment);
@@ -94,10 +69,6 @@ std::vector<TimeMark> pick_marks(const Film& film) {
   return marks;
 }
 
-void draw_count_sign(Canvas& canvas, const Box& box) {
-  canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight, Upright::kMiddle);
-}
-
 std::vector<KeyEntry> key_entries(const Film& film, int cell) {
   std::vector<KeyEntry> key = {{{draw_start}, "start"}};
   if (!film.results.back().terminated) key.push_back({{draw_agent}, "end"});
@@ -105,9 +76,7 @@ std::vector<KeyEntry> key_entries(const Film& film, int cell) {
   key.push_back({{treasure_sign(film.task.second)}, "pick second"});
   if (film.states.back().picked > 0) key.push_back({{draw_picked}, "picked"});
   if (film.results.back().wrong) key.push_back({{draw_wrong}, "wrong pick"});
-  const auto moments = moments_in(cells_up_to(film, film.steps()));
-  if (count_size(cell) > 0 && *std::max_element(moments.begin(), moments.end()) > kPathLanes)
-    key.push_back({{draw_count_sign}, "moments in this cell"});
+  if (has_counts(cell, cells_up_to(film, film.steps()))) key.push_back({{draw_count_sign}, "moments in this cell"});
   return key;
 }
 
@@ -133,7 +102,7 @@ Canvas draw_episode(const Film& film, const EpisodeStyle& style, const Font& fon
   const Heading heading(style.title.empty() ? name_of(film) : style.title, describe(film), inside, style.scale, font);
   const Key key(key_entries(film, px(kCellPt)), inside, style.scale, font);
   const Strip strip(concat("what the agent saw as it took these steps, window ", window, " x ", window), strip_pictures(film, style.strip), kMostColumns,
-                    kGridSide, inside, px);
+                    kGridSide, inside, px, font);
 
   const int maze_y = margin + heading.height() + px(4), key_y = maze_y + side + px(12), strip_y = key_y + key.height() + px(14);
   const int bottom = strip.height() > 0 ? strip_y + strip.height() : key_y + key.height();

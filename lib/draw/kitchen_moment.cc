@@ -91,12 +91,7 @@ void draw_objects(Canvas& canvas, const PlanPlace& place, const Kitchen& kitchen
     const int cell = frame.objects[size_t(object)];
     return object_box(place, plan_cell(kitchen, cell / kSceneStride, cell % kSceneStride));
   };
-  if (frame.objects[size_t(wanted)] >= 0) {
-    const Box box = box_of(wanted);
-    const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
-    canvas.disc(centre, box.width * 0.68, kInk);
-    canvas.disc(centre, box.width * 0.6, kPaper);
-  }
+  if (frame.objects[size_t(wanted)] >= 0) draw_wanted(canvas, box_of(wanted), wanted);
   for (int i = 0; i < kKitchenObjects; ++i)
     if (frame.objects[size_t(i)] >= 0) draw_object(canvas, box_of(i), i);
 }

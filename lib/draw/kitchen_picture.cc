@@ -207,6 +207,20 @@ Sign object_sign(int object) {
   return [object](Canvas& canvas, const Box& box) { draw_object(canvas, box, object); };
 }
 
+void draw_wanted(Canvas& canvas, const Box& box, int object) {
+  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  canvas.disc(centre, box.width * 0.68, kInk);
+  canvas.disc(centre, box.width * 0.6, kPaper);
+  draw_object(canvas, box, object);
+}
+
+Sign wanted_sign(int object) {
+  return [object](Canvas& canvas, const Box& box) {
+    const int inset = box.width / 7;
+    draw_wanted(canvas, {box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, object);
+  };
+}
+
 Sign receptacle_sign(int receptacle) {
   return [receptacle](Canvas& canvas, const Box& box) {
     canvas.fill(box, receptacle_colour(receptacle));

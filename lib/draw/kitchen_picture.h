@@ -34,6 +34,9 @@ void draw_object(Canvas& canvas, const Box& box, int object);
 // A disc with an arrowhead; heading in degrees clockwise from north.
 void draw_looker(Canvas& canvas, const Box& box, int heading);
 Sign object_sign(int object);
+// With a light ring around it, as the task's object has.
+void draw_wanted(Canvas& canvas, const Box& box, int object);
+Sign wanted_sign(int object);
 Sign receptacle_sign(int receptacle);
 
 // All at one scale. Throws kUsage for none.

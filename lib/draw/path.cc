@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/error.h"
 #include "draw/colour.h"
 #include "draw/stroke.h"
 
@@ -38,6 +39,15 @@ void draw_piece(Canvas& canvas, Point a, Point b, double width, Rgb colour) {
   const int left = int(std::floor(std::min(a.x, b.x))) - reach, top = int(std::floor(std::min(a.y, b.y))) - reach;
   const Box around = {left, top, int(std::ceil(std::max(a.x, b.x))) + reach - left, int(std::ceil(std::max(a.y, b.y))) + reach - top};
   canvas.paint(stroke_mask({a, b}, width, {}, around), colour);
+}
+
+// Size of the numbers in the cells; 0 where they could not be read.
+int count_size(int cell) { return cell / 3 < 8 ? 0 : cell / 3; }
+
+std::map<int, int> counts_of(const std::vector<int>& cells) {
+  std::map<int, int> counts;
+  for (const int cell : cells) ++counts[cell];
+  return counts;
 }
 
 }  // namespace
@@ -104,6 +114,28 @@ void draw_path(Canvas& canvas, const PlanPlace& place, const std::vector<int>& c
     const Point tip = {(a.x + b.x + direction.x * size) / 2, (a.y + b.y + direction.y * size) / 2};
     draw_arrowhead(canvas, tip, direction, size, colour(i));
   }
+}
+
+bool has_counts(int cell, const std::vector<int>& cells) {
+  const auto counts = counts_of(cells);
+  return count_size(cell) > 0 && std::any_of(counts.begin(), counts.end(), [](const auto& count) { return count.second > kPathLanes; });
+}
+
+void draw_counts(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells) {
+  const int size = count_size(place.cell);
+  if (size == 0) return;
+  for (const auto& [cell, count] : counts_of(cells)) {
+    if (count <= kPathLanes) continue;
+    const Box box = place.box(cell);
+    const std::string text = concat(count, "\u00d7");
+    const int width = canvas.font().width(text, size) + 2, height = canvas.font().digit_height(size) + 3;
+    canvas.fill({box.right() - width - 1, box.bottom() - height - 1, width, height}, kPaper);
+    canvas.text(box.right() - 2, box.bottom() - 3, text, size, kInk, Across::kRight, Upright::kBaseline);
+  }
+}
+
+void draw_count_sign(Canvas& canvas, const Box& box) {
+  canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight, Upright::kMiddle);
 }
 
 }  // namespace synpo

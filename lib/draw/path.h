@@ -27,4 +27,9 @@ void draw_arrowhead(Canvas& canvas, Point tip, Point direction, double size, Rgb
 // `steps` is the step whose colour is darkest, `ground` the colour of a thin border. With arrowheads on the way.
 void draw_path(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells, int steps, Rgb ground);
 
+// How often each cell is among `cells`, in a corner of those where the path cannot tell: more than kPathLanes. Small cells have no room for that.
+void draw_counts(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells);
+bool has_counts(int cell, const std::vector<int>& cells);
+void draw_count_sign(Canvas& canvas, const Box& box);
+
 }  // namespace synpo

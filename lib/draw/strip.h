@@ -16,8 +16,8 @@ struct StripPicture {
 
 class Strip {
  public:
-  // In a strip `width` pixels wide, at most `columns` in a row; the side of a picture is a multiple of `unit` pixels.
-  Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px);
+  // In a strip `width` pixels wide, at most `columns` in a row, labels broken where they are wider than that leaves room; the side of a picture is a multiple of `unit` pixels.
+  Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px, const Font& font);
 
   int height() const;  // 0 without pictures
   void draw(Canvas& canvas, int x, int y) const;
@@ -30,6 +30,8 @@ class Strip {
   std::vector<StripPicture> pictures_;
   Pixels px_;
   int gap_, line_, side_, columns_, columns_gap_;  // side_ with the frame
+  std::vector<std::vector<std::string>> labels_;   // lines of each
+  int lines_ = 1;                                  // of the longest
 };
 
 }  // namespace synpo
