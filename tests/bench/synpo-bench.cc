@@ -5,6 +5,7 @@
 //   synpo-bench kitchen B THREADS        the training step of the kitchens' network, that of Table 3, on random features
 //   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
 //
+// world_steps_per_s and kitchen_steps_per_s are steps of the two worlds, with what the agent sees at each, on one core.
 // train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
 // head_FORM_ACTIONS_train and _infer are the bilinear head alone, d = K = 128, 512 states of 144 pairs. `direct` composes A d K a pair and
 // scores with A d a state; `general`, with phi(a) of D = 32, composes D d K and scores with D d + A D. Training is forward and backward, inference
@@ -320,6 +321,7 @@ void method_rows(int threads) {
 int rows() {
   const int threads = Parallel().threads();
   row("world_steps_per_s", world_rate("gridworld"), "steps/s");
+  row("kitchen_steps_per_s", world_rate("kitchen"), "steps/s");
   row("trajectories_per_s", trajectory_rate(), "trajectories/s");
   for (const NamedKernels<float>& target : all_kernels<float>()) {
     choose_kernels(target.name);
