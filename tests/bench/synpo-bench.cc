@@ -19,6 +19,7 @@
 #include "base/random.h"
 #include "learn/episode.h"
 #include "learn/model.h"
+#include "learn/open.h"
 #include "learn/recipe.h"
 #include "learn/running_episode.h"
 #include "learn/steps.h"
