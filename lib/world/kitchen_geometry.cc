@@ -135,7 +135,8 @@ KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenScene& scene) 
   }
   tables.slots = choose_slots(kitchen, scene);
   if (int(tables.slots.size()) < kKitchenObjects)
-    fail(Exit::kData, kitchen.name, ": found ", tables.slots.size(), " places on which an object can lie and be picked up, expected at least ", kKitchenObjects);
+    fail(Exit::kData, kitchen.name, ": found ", tables.slots.size(), " places on which an object can lie and be picked up, expected at least ",
+         kKitchenObjects);
   auto sight = std::make_shared<KitchenSight>();
   sight->slots = seen_lists(kitchen, scene, slot_targets(kitchen, tables.slots));
   sight->receptacles = seen_lists(kitchen, scene, receptacle_targets(kitchen));

@@ -100,7 +100,9 @@ void add_legs(const Kitchen& kitchen, int row, int column, std::vector<SceneBox>
 
 }  // namespace
 
-KitchenScene::KitchenScene(const Kitchen& kitchen) : columns(kSceneCells), reach(kSceneCells, 0.0f), receptacles(kitchen.receptacles), hash(kitchen.hash) {
+KitchenScene::KitchenScene(const Kitchen& kitchen)
+    : columns(kSceneCells), reach(kSceneCells, 0.0f), receptacles(kitchen.receptacles), hash(kitchen.hash), palette(kitchen.hash),
+      cells(kitchen.rows * kSceneStride) {
   std::vector<SceneBox> all;
   add_microwave(receptacles[kMicrowave], all);
   add_sink(receptacles[kSink], all);
@@ -137,36 +139,21 @@ bool Camera::sees(const Vec3& offset) const {
   return reach > 0 && std::fabs(along(right)) <= reach && std::fabs(along(up)) <= reach;
 }
 
-bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered, Hit& hit) {
+void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit) {
   const KitchenScene::Column& solid = view.scene->columns[size_t(cell)];
-  const float z_in = kEyeHeight + t_in * direction.z, z_out = kEyeHeight + t_out * direction.z;
-  hit = {kInfinity, cell, Material::kFloor, Face::kTop, kNoObject};
-  if (z_in >= solid.top) {
-    if (z_out < solid.top) hit = {(solid.top - kEyeHeight) / direction.z, cell, solid.cover, Face::kTop, kNoObject};
-  } else if (z_in >= solid.bottom) {
-    hit = {t_in, cell, solid.side, entered, kNoObject};
-    return true;
-  } else if (z_out < 0) {
-    hit.t = -kEyeHeight / direction.z;
+  const Vec3 eye = {view.eye_x, view.eye_y, kEyeHeight};
+  float t;
+  Face face;
+  for (int i = 0; i < solid.boxes; ++i) {
+    const SceneBox& box = view.scene->boxes[size_t(solid.first_box + i)];
+    if (hit_box(box.low, box.high, eye, direction, t_in, t_out, t, face) && t < hit.t) hit = {t, cell, box.material, face, kNoObject};
   }
   const uint8_t object = view.occupants ? view.occupants[cell] : kNoObject;
-  if (solid.boxes || object != kNoObject) {
-    const Vec3 eye = {view.eye_x, view.eye_y, kEyeHeight};
-    float t;
-    Face face;
-    for (int i = 0; i < solid.boxes; ++i) {
-      const SceneBox& box = view.scene->boxes[size_t(solid.first_box + i)];
-      if (hit_box(box.low, box.high, eye, direction, t_in, t_out, t, face) && t < hit.t) hit = {t, cell, box.material, face, kNoObject};
-    }
-    if (object != kNoObject) {
-      const Vec3 above = {eye.x - float(cell % kSceneStride) - 0.5f, eye.y - float(cell / kSceneStride) - 0.5f, eye.z - solid.top};
-      for (const ObjectPart& part : object_parts(object))
-        if (hit_box(part.low, part.high, above, direction, t_in, t_out, t, face) && t < hit.t)
-          hit = {t, cell, part.trim ? Material::kObjectTrim : Material::kObject, face, object};
-    }
-  }
-  if (hit.t == kInfinity && z_out >= kRoomHeight) hit = {(kRoomHeight - kEyeHeight) / direction.z, cell, Material::kCeiling, Face::kBottom, kNoObject};
-  return hit.t != kInfinity;
+  if (object == kNoObject) return;
+  const Vec3 above = {eye.x - float(cell % kSceneStride) - 0.5f, eye.y - float(cell / kSceneStride) - 0.5f, eye.z - solid.top};
+  for (const ObjectPart& part : object_parts(object))
+    if (hit_box(part.low, part.high, above, direction, t_in, t_out, t, face) && t < hit.t)
+      hit = {t, cell, part.trim ? Material::kObjectTrim : Material::kObject, face, object};
 }
 
 Hit trace(const SceneView& view, int cell, const Vec3& direction) {

@@ -6,9 +6,11 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "world/kitchen.h"
+#include "world/kitchen_palette.h"
 
 namespace synpo {
 
@@ -61,6 +63,8 @@ struct KitchenScene {
   std::vector<SceneBox> boxes;
   std::array<Kitchen::Footprint, kKitchenReceptacles> receptacles;
   uint64_t hash;                 // the kitchen's
+  KitchenPalette palette;
+  int cells;                     // of the rows in use: columns and reach matter that far
 };
 
 // A scene with objects in it, seen from one place.
@@ -113,8 +117,32 @@ struct RayWalk {
 // Lowest height of a ray within a cell.
 inline float lowest(float dz, float t_in, float t_out) { return kEyeHeight + dz * (dz < 0 ? t_out : t_in); }
 
+// Puts into `hit` what of a cell's boxes and object a ray meets before it.
+void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit);
+
 // The first thing that a ray from the eye meets in one cell of its way; false for nothing.
-bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered, Hit& hit);
+inline bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered, Hit& hit) {
+  constexpr float kNone = std::numeric_limits<float>::infinity();
+  const KitchenScene::Column& solid = view.scene->columns[size_t(cell)];
+  const float z_in = kEyeHeight + t_in * direction.z, z_out = kEyeHeight + t_out * direction.z;
+  hit = {kNone, cell, Material::kFloor, Face::kTop, kNoObject};
+  if (z_in >= solid.top) {
+    if (z_out < solid.top) {
+      hit.t = (solid.top - kEyeHeight) / direction.z;
+      hit.material = solid.cover;
+    }
+  } else if (z_in >= solid.bottom) {
+    hit.t = t_in;
+    hit.material = solid.side;
+    hit.face = entered;
+    return true;
+  } else if (z_out < 0) {
+    hit.t = -kEyeHeight / direction.z;
+  }
+  if (solid.boxes || (view.occupants && view.occupants[cell] != kNoObject)) hit_boxes(view, direction, cell, t_in, t_out, hit);
+  if (hit.t == kNone && z_out >= kRoomHeight) hit = {(kRoomHeight - kEyeHeight) / direction.z, cell, Material::kCeiling, Face::kBottom, kNoObject};
+  return hit.t != kNone;
+}
 
 // The first thing that a ray from the eye above `cell` meets; walls, floor and ceiling let none pass.
 Hit trace(const SceneView& view, int cell, const Vec3& direction);

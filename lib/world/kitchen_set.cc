@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "world/kitchen_plan.h"
 
 namespace synpo {
@@ -19,7 +20,7 @@ KitchenSet::KitchenSet() : KitchenSet(builtin_kitchens()) {}
 
 WorldState KitchenSet::reset(int env, Random& random) const { return pack(kitchen_reset(tables(env), random)); }
 
-std::string KitchenSet::extractor() const { return "colour-cells-1"; }
+std::string KitchenSet::extractor() const { return kExtractorName + ('@' + hex(extractor_hash())); }
 
 KitchenFrame KitchenSet::frame(int env, const WorldState& state) const {
   const KitchenState at = unpack(state);

@@ -9,8 +9,10 @@ constexpr ObjectPart part(float x, float y, float width, float depth, float z_lo
 }
 
 constexpr ObjectPart kContainer[] = {part(0, 0, 0.17f, 0.15f, 0, 0.11f), part(0, 0, 0.18f, 0.16f, 0.11f, 0.14f, true)};
-constexpr ObjectPart kLettuce[] = {part(0, 0, 0.18f, 0.18f, 0.02f, 0.12f), part(0, 0, 0.12f, 0.12f, 0, 0.17f), part(0, 0, 0.05f, 0.05f, 0.17f, 0.19f, true)};
-constexpr ObjectPart kMug[] = {part(-0.02f, 0, 0.1f, 0.1f, 0, 0.13f), part(0.05f, 0, 0.04f, 0.025f, 0.03f, 0.1f, true), part(-0.02f, 0, 0.07f, 0.07f, 0.13f, 0.132f, true)};
+constexpr ObjectPart kLettuce[] = {part(0, 0, 0.18f, 0.18f, 0.02f, 0.12f), part(0, 0, 0.12f, 0.12f, 0, 0.17f),
+                                   part(0, 0, 0.05f, 0.05f, 0.17f, 0.19f, true)};
+constexpr ObjectPart kMug[] = {part(-0.02f, 0, 0.1f, 0.1f, 0, 0.13f), part(0.05f, 0, 0.04f, 0.025f, 0.03f, 0.1f, true),
+                               part(-0.02f, 0, 0.07f, 0.07f, 0.13f, 0.132f, true)};
 constexpr ObjectPart kTomato[] = {part(0, 0, 0.14f, 0.14f, 0, 0.12f), part(0, 0, 0.06f, 0.06f, 0.12f, 0.135f, true)};
 constexpr ObjectPart kPlate[] = {part(0, 0, 0.22f, 0.22f, 0.015f, 0.04f), part(0, 0, 0.12f, 0.12f, 0, 0.042f, true)};
 constexpr ObjectPart kApple[] = {part(0, 0, 0.13f, 0.13f, 0, 0.12f), part(0, 0, 0.02f, 0.02f, 0.12f, 0.16f, true)};

@@ -172,13 +172,13 @@ TEST(KitchenPlanner, RefusesWhatCannotBeUsed) {
   }
 }
 
-// More starts than tables are kept, asked for in different orders by four threads.
+// More tables than are kept, for several tasks from every start, asked for in different orders by four threads.
 TEST(KitchenPlanner, GivesTheSameWithAndWithoutItsMemory) {
   constexpr int kStarts = 150;
   std::vector<int> expected;
   for (int i = 0; i < kStarts; ++i) {
     const KitchenSet fresh({small_kitchen()});
-    Random random(9, Purpose::kEpisodeStart, 0, uint64_t(i));
+    Random random(9, Purpose::kEpisodeStart, 0, uint64_t(i / 3));
     expected.push_back(fresh.planner(0).steps_to_success(kitchen_task(i % kKitchenTasks), unpack(fresh.reset(0, random))));
   }
   const KitchenSet shared({small_kitchen()});
@@ -189,7 +189,7 @@ TEST(KitchenPlanner, GivesTheSameWithAndWithoutItsMemory) {
       for (int round = 0; round < 3; ++round)
         for (int n = 0; n < kStarts; ++n) {
           const int i = n * (thread * 6 + 1) % kStarts;
-          Random random(9, Purpose::kEpisodeStart, 0, uint64_t(i));
+          Random random(9, Purpose::kEpisodeStart, 0, uint64_t(i / 3));
           found[size_t(thread)][size_t(i)] =
               shared.planner(0).steps_to_success(kitchen_task(i % kKitchenTasks), unpack(shared.reset(0, random)));
         }
