@@ -7,7 +7,7 @@ B        := build
 
 ALL_CXXFLAGS := -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP $(CXXFLAGS) -Ilib -isystem /usr/include/eigen3
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
-OPENCV_LIBS   = -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
 LIB_SRC  := $(wildcard lib/*/*.cc)
@@ -24,7 +24,7 @@ TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
 MAPS     := $(wildcard lib/world/maps/map*.txt)
 
 PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
-            libgtest-dev bats jq man-db
+            libgtest-dev bats jq man-db python3-numpy
 
 BENCH_PACKAGES := python3-torch libopenblas0-openmp
 

@@ -16,7 +16,7 @@ using namespace synpo;
 namespace {
 
 int body(int argc, char** argv) {
-  std::string checkpoint_path = "-", pairs_path, output_path = "-", record_path;
+  std::string checkpoint_path = "-", pairs_path, world_name, output_path = "-", record_path;
   int64_t count = 100, first = 0, seed = 1, threads = 0;
   double temperature = kTemperature;  // unless the method has another
   bool describe = false, quiet = false;
@@ -24,6 +24,7 @@ int body(int argc, char** argv) {
                   "Runs the policy of a checkpoint on every pair and counts successes.");
   options.text('c', "checkpoint", "FILE", "the checkpoint", checkpoint_path)
       .text('p', "pairs", "FILE", "pairs to run, all its rows: TSV env, task (all pairs)", pairs_path)
+      .text('w', "world", "WORLD", "kitchen:DIR, where the checkpoint's kitchens lie in files of their own", world_name)
       .integer('n', "count", "N", "episodes of every pair", count, 1, 100000000)
       .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", first, 0, INT64_MAX / 2)
       .integer('s', "seed", "N", "seed of the start states, which are the same for every checkpoint", seed, 0, INT64_MAX)
@@ -41,7 +42,7 @@ int body(int argc, char** argv) {
     write_file(output_path, checkpoint.describe() + "\n", Output::Kind::kText);
     return 0;
   }
-  const std::unique_ptr<World> restored = world_of(checkpoint);
+  const std::unique_ptr<World> restored = world_of(checkpoint, world_name);
   const World& world = *restored;
   Model model = load_model(checkpoint, world);
   if (!options.given("temperature")) temperature = model.policy->temperature();

@@ -6,6 +6,7 @@
 #include "base/progress.h"
 #include "base/signals.h"
 #include "learn/adapt.h"
+#include "learn/open.h"
 #include "learn/stream.h"
 #include "synpo-finetune.h"
 
@@ -13,11 +14,10 @@ using namespace synpo;
 
 namespace {
 
-// The checkpoint's environments, and those of `name` that it has not.
-std::unique_ptr<World> wider_world(const World& world, const std::string& name) {
+// The checkpoint's environments, and those of `more` that it has not.
+std::unique_ptr<World> wider_world(const World& world, const World* more, const std::string& name) {
   std::vector<Environment> environments = world.environments();
-  if (!name.empty()) {
-    const std::unique_ptr<World> more = open_world(name);
+  if (more) {
     if (more->name() != world.name()) fail(Exit::kUsage, "the checkpoint is of ", world.name(), ", -w names ", more->name());
     for (const Environment& env : more->environments()) {
       const int known = world.env_index(env.name);
@@ -27,7 +27,7 @@ std::unique_ptr<World> wider_world(const World& world, const std::string& name) 
         fail(Exit::kData, "environment ", quoted(env.name), " of ", quoted(name), " is another one in the checkpoint");
     }
   }
-  return restore_world(world.name(), environments);
+  return restore_world(world.name(), environments, more);
 }
 
 AdaptTargets parse_targets(const std::string& list) {
@@ -54,7 +54,7 @@ int adapt(int argc, char** argv) {
   Options options("synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
                   "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
-      .text('w', "world", "WORLD", "new environments too: gridworld, gridworld:DIR for the map*.txt of a folder, or kitchen", world_name)
+      .text('w', "world", "WORLD", "new environments too: gridworld, gridworld:DIR, kitchen or kitchen:DIR", world_name)
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
       .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", trajectories, 1, 100000)
       .call(0, "train", "WHAT", "embeddings, and behind it +heads, +coefficients, or both [embeddings]",
@@ -77,9 +77,10 @@ int adapt(int argc, char** argv) {
   catch_stop_signals();
   Parallel parallel{int(threads)};
   const Checkpoint checkpoint = load_checkpoint(checkpoint_path);
-  const std::unique_ptr<World> from = world_of(checkpoint);
+  const std::unique_ptr<World> more = world_name.empty() ? nullptr : open_world(world_name);
+  const std::unique_ptr<World> from = world_of(checkpoint, more.get());
   const Model model = load_model(checkpoint, *from);
-  const std::unique_ptr<World> wider = wider_world(*from, world_name);
+  const std::unique_ptr<World> wider = wider_world(*from, more.get(), world_name);
   const World& world = *wider;
   Adaptation adapted(world, parallel, widen(model, *from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation, uint64_t(seed));
   Output output(output_path, Output::Kind::kBinary, force);

@@ -10,6 +10,7 @@
 #include "base/signals.h"
 #include "format/run_log.h"
 #include "learn/evaluate.h"
+#include "learn/open.h"
 #include "learn/ppo.h"
 #include "learn/recipe.h"
 #include "synpo-finetune.h"
@@ -81,7 +82,7 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
       .text(0, "resume", "FILE", "go on from such a checkpoint, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
-      .text('w', "world", "WORLD", "with --init: gridworld, gridworld:DIR for the map*.txt of a folder, or kitchen", s.world)
+      .text('w', "world", "WORLD", "with --init: gridworld, gridworld:DIR, kitchen or kitchen:DIR; else kitchen:DIR, where kitchens lie in files of their own", s.world)
       .text('m', "method", "NAME", "with --init: the method", s.method)
       .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
       .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
@@ -127,7 +128,7 @@ int ppo(int argc, char** argv) {
   const bool random = !s.init.empty(), resumes = !s.resume.empty();
   if (random && s.init != "random") fail(Exit::kUsage, "option --init: found ", quoted(s.init), ", expected random");
   if (random && options.given("checkpoint")) fail(Exit::kUsage, "-c and --init exclude each other");
-  if (!random && (options.given("world") || options.given("method"))) fail(Exit::kUsage, "-w and -m go with --init");
+  if (!random && options.given("method")) fail(Exit::kUsage, "-m goes with --init");
 
   catch_stop_signals();
   Parallel parallel{int(s.threads)};
@@ -137,7 +138,9 @@ int ppo(int argc, char** argv) {
   if (!options.given("env-loss")) tuning.losses.env = weights.env;
   if (!options.given("task-loss")) tuning.losses.task = weights.task;
   const bool fresh = random && !resumes;
-  const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from);
+  // With --init the checkpoint of --resume may hold its world, whatever -w says.
+  const bool needs_world = options.given("world") && (!random || lies_in_files(from));
+  const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from, needs_world ? s.world : "");
   const World& world = *opened;
   const ImitationOptions network = recipe(kDefaultRecipe, s.method, world.sight());
   Model model = fresh ? fresh_model(s.method, network.shape(world), {uint64_t(s.seed), network.embedding_sd}) : load_model(from, world);

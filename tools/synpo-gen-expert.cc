@@ -5,6 +5,7 @@
 #include "base/progress.h"
 #include "base/signals.h"
 #include "learn/episode.h"
+#include "learn/open.h"
 
 using namespace synpo;
 
@@ -37,7 +38,7 @@ int gen_expert(int argc, char** argv) {
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's", noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", window, 0, 16)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR for the map*.txt of a folder, or kitchen", world_name)
+      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen or kitchen:DIR", world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .flag('q', "quiet", "no progress", quiet);
   options.parse(argc, argv);

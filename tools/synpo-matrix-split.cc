@@ -5,9 +5,9 @@
 
 #include "base/error.h"
 #include "format/pairs.h"
+#include "learn/open.h"
 #include "synpo-matrix.h"
 #include "world/split.h"
-#include "world/world.h"
 
 namespace synpo {
 namespace {

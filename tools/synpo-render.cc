@@ -115,14 +115,15 @@ int view(int argc, char** argv) {
 }
 
 int body(int argc, char** argv) {
-  return run_commands("synpo-render", "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and policies as PNG.",
+  return run_commands("synpo-render", "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and policies as PNG; runs networks over views.",
                       {{"heatmap", "success matrices", heatmap},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes and kitchens", map},
                        {"view", "what the agent sees", view},
                        {"episode", "a trajectory as a path through its maze or kitchen", episode},
                        {"embedding", "a checkpoint's environments and tasks", embedding},
-                       {"policy", "what a checkpoint does in every cell, against the planner", policy}},
+                       {"policy", "what a checkpoint does in every cell, against the planner", policy},
+                       {"features", "scene files of kitchens, their views seen by a feature network", features}},
                       argc, argv);
 }
 

@@ -69,3 +69,4 @@ int curves(int argc, char** argv);
 int embedding(int argc, char** argv);
 int episode(int argc, char** argv);
 int policy(int argc, char** argv);
+int features(int argc, char** argv);

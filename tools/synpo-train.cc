@@ -12,6 +12,7 @@
 #include "base/progress.h"
 #include "base/signals.h"
 #include "learn/imitate.h"
+#include "learn/open.h"
 
 using namespace synpo;
 
@@ -134,14 +135,14 @@ int body(int argc, char** argv) {
       fail(Exit::kUsage, "option --time: found ", quoted(s.time), ", ", error.what());
     }
   const bool resumes = !s.resume.empty();
-  if (resumes && (hyper.given() || !s.init.empty() || options.given("pairs") || options.given("method") || options.given("seed") || options.given("world")))
+  if (resumes && (hyper.given() || !s.init.empty() || options.given("pairs") || options.given("method") || options.given("seed")))
     fail(Exit::kUsage, "--resume takes everything but the limit from the checkpoint");
   if (limit_s > 0 && options.given("count")) fail(Exit::kUsage, "-n and --time exclude each other");
   catch_stop_signals();
 
   Parallel parallel(int(s.threads));
   const Checkpoint from = resumes ? load(s.resume) : Checkpoint();
-  const std::unique_ptr<World> opened = resumes ? world_of(from) : open_world(s.world);
+  const std::unique_ptr<World> opened = resumes ? world_of(from, options.given("world") ? s.world : "") : open_world(s.world);
   const World& world = *opened;
   std::vector<EnvTask> seen;
   if (!s.pairs.empty()) {

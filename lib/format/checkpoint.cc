@@ -35,6 +35,7 @@ OrderedJson to_json(const Checkpoint& c) {
   out["method"] = c.method;
   out["world"] = c.world;
   out["rules"] = c.rules;
+  if (!c.extractor.empty()) out["extractor"] = c.extractor;
   out["window"] = c.window;
   out["updates"] = c.updates;
   out["states"] = c.states;
@@ -82,6 +83,7 @@ Checkpoint read_checkpoint(Input& input) {
     c.method = file.meta("method");
     c.world = file.meta("world");
     c.rules = int(std::min<int64_t>(whole(file, "rules"), INT32_MAX));
+    if (file.metadata.count("extractor")) c.extractor = file.meta("extractor");
     c.window = int(std::min<int64_t>(whole(file, "window"), 1000));
     c.updates = whole(file, "updates");
     c.states = whole(file, "states");

@@ -16,11 +16,12 @@ struct Checkpoint {
   struct Env {
     std::string name;
     uint64_t hash;
-    std::string content;  // canonical
+    std::string content;  // canonical; empty where it lies in a file of its own
   };
   std::string method = "synpo";
   std::string world = "gridworld";
   int rules = 1;
+  std::string extractor;  // of the features, "name@hash"; empty where observations are pictures
   int window = 1;
   std::vector<Env> envs;
   std::vector<std::string> tasks;

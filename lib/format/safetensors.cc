@@ -19,8 +19,10 @@ struct TypeName {
   const char* name;
   size_t size;
 };
-constexpr TypeName kTypes[] = {{TensorType::kF32, "F32", 4},
+constexpr TypeName kTypes[] = {{TensorType::kF16, "F16", 2},
+                               {TensorType::kF32, "F32", 4},
                                {TensorType::kF64, "F64", 8},
+                               {TensorType::kI32, "I32", 4},
                                {TensorType::kI64, "I64", 8},
                                {TensorType::kU8, "U8", 1},
                                {TensorType::kU64, "U64", 8}};
@@ -31,8 +33,10 @@ const TypeName& type_name(TensorType type) {
 
 template <class T>
 constexpr TensorType type_of() {
+  if constexpr (std::is_same_v<T, Half>) return TensorType::kF16;
   if constexpr (std::is_same_v<T, float>) return TensorType::kF32;
   if constexpr (std::is_same_v<T, double>) return TensorType::kF64;
+  if constexpr (std::is_same_v<T, int32_t>) return TensorType::kI32;
   if constexpr (std::is_same_v<T, int64_t>) return TensorType::kI64;
   if constexpr (std::is_same_v<T, uint8_t>) return TensorType::kU8;
   if constexpr (std::is_same_v<T, uint64_t>) return TensorType::kU64;
@@ -60,6 +64,7 @@ std::string read_bytes(Input& input, uint64_t size, const char* what) {
 }  // namespace
 
 size_t type_size(TensorType type) { return type_name(type).size; }
+const char* type_text(TensorType type) { return type_name(type).name; }
 
 size_t Tensor::count() const {
   size_t count = 1;
@@ -139,7 +144,7 @@ SafeTensors read_safetensors(Input& input) {
       bad(where, ": expected dtype, shape and data_offsets");
     const auto& type = entry["dtype"];
     const auto known = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return type == t.name; });
-    if (known == std::end(kTypes)) bad(where, ": type ", quoted(type.dump()), ", this build reads F32, F64, I64, U8 and U64");
+    if (known == std::end(kTypes)) bad(where, ": type ", quoted(type.dump()), ", this build reads F16, F32, F64, I32, I64, U8 and U64");
     const auto& shape = entry["shape"];
     const auto& offsets = entry["data_offsets"];
     if (!shape.is_array() || shape.size() > 8) bad(where, ": shape is no array of at most 8 numbers");
@@ -196,8 +201,10 @@ std::string format_safetensors(const SafeTensors& file) {
   template void SafeTensors::add(const std::string&, const std::vector<int64_t>&, const T*, size_t);  \
   template void SafeTensors::get(const std::string&, T*, size_t) const;                               \
   template std::vector<T> SafeTensors::get(const std::string&) const;
+SYNPO_INSTANTIATE(Half)
 SYNPO_INSTANTIATE(float)
 SYNPO_INSTANTIATE(double)
+SYNPO_INSTANTIATE(int32_t)
 SYNPO_INSTANTIATE(int64_t)
 SYNPO_INSTANTIATE(uint8_t)
 SYNPO_INSTANTIATE(uint64_t)

@@ -6,12 +6,15 @@
 #include <string_view>
 #include <vector>
 
+#include "base/half.h"
 #include "base/io.h"
 
 namespace synpo {
 
-enum class TensorType { kF32, kF64, kI64, kU8, kU64 };
+enum class TensorType { kF16, kF32, kF64, kI32, kI64, kU8, kU64 };
 size_t type_size(TensorType type);
+// As the file has it: "F32".
+const char* type_text(TensorType type);
 
 struct Tensor {
   TensorType type = TensorType::kF32;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "learn/open.h"
 #include "policy/mlp.h"
 #include "policy/modulenet.h"
 #include "policy/mtl.h"
@@ -121,11 +122,23 @@ Model fresh_model(const std::string& method, const PolicyShape& shape, const Ini
   return model;
 }
 
-std::unique_ptr<World> world_of(const Checkpoint& checkpoint) {
+bool lies_in_files(const Checkpoint& checkpoint) {
+  return std::any_of(checkpoint.envs.begin(), checkpoint.envs.end(), [](const Checkpoint::Env& env) { return env.content.empty(); });
+}
+
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source) {
+  if (source.empty()) return world_of(checkpoint);
+  if (!lies_in_files(checkpoint))
+    fail(Exit::kUsage, "the checkpoint holds its environments: -w is for those that lie in files of their own");
+  const std::unique_ptr<World> opened = open_world(source);
+  return world_of(checkpoint, opened.get());
+}
+
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source) {
   if (checkpoint.envs.empty()) fail(Exit::kData, "the checkpoint has no environment");
   std::vector<Environment> environments;
   for (const Checkpoint::Env& env : checkpoint.envs) environments.push_back({env.name, env.hash, env.content});
-  std::unique_ptr<World> world = restore_world(checkpoint.world, environments);
+  std::unique_ptr<World> world = restore_world(checkpoint.world, environments, source);
   if (checkpoint.rules != world->rules()) fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", world->rules());
   if (checkpoint.tasks != world->task_names()) fail(Exit::kData, "the checkpoint's tasks are not this build's");
   return world;
@@ -151,6 +164,8 @@ Model load_model(const Checkpoint& checkpoint, const World& world) {
   model.shape = parse_shape(checkpoint.shape);
   if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != world.actions() || model.shape.sight != world.sight())
     fail(Exit::kData, "the network's shape does not fit the world");
+  if (!checkpoint.extractor.empty() && checkpoint.extractor != world.extractor())
+    fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ", quoted(world.extractor()));
   model.window = checkpoint.window;
   model.seed = checkpoint.seed;
   model.updates = checkpoint.updates;
@@ -169,6 +184,7 @@ Checkpoint describe_model(const Model& model, const World& world) {
   c.method = model.method;
   c.world = world.name();
   c.rules = world.rules();
+  c.extractor = world.extractor();
   c.window = model.window;
   for (const Environment& env : world.environments()) c.envs.push_back({env.name, env.hash, env.content});
   c.tasks = world.task_names();

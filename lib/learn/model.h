@@ -38,8 +38,14 @@ struct Model {
 // Fresh weights; the window is 1 and no pair is seen.
 Model fresh_model(const std::string& method, const PolicyShape& shape, const InitOptions& options);
 
-// The world in the checkpoint, and the model. Throws kData when tensors or world don't fit this build.
-std::unique_ptr<World> world_of(const Checkpoint& checkpoint);
+// Whether some of its environments lie in files of their own.
+bool lies_in_files(const Checkpoint& checkpoint);
+// The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where they are not there, are other ones, or
+// don't fit this build, kUsage where there is no source.
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source = nullptr);
+// The same with the argument of -w, which may be empty. Throws kUsage where a checkpoint that holds its environments is given one.
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source);
+// Throws kData when tensors or world don't fit, or features come from another extractor.
 Model load_model(const Checkpoint& checkpoint, const World& world);
 
 // Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back.

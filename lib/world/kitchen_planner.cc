@@ -105,6 +105,10 @@ std::shared_ptr<const KitchenPlanner::Steps> KitchenPlanner::find(KitchenTask ta
   return steps;
 }
 
+bool KitchenPlanner::has_plan(KitchenTask task, const KitchenState& state) const {
+  return (*find(task, state))[index(state.pose, state.doors)] != kFar;
+}
+
 int KitchenPlanner::steps_to_success(KitchenTask task, const KitchenState& state) const {
   return checked(task, (*find(task, state))[index(state.pose, state.doors)]);
 }

@@ -7,7 +7,7 @@ namespace synpo {
 const char* const kKitchenActionNames[kKitchenActions] = {"MoveAhead", "RotateLeft", "RotateRight", "LookUp", "LookDown", "OpenClose", "PickupPut"};
 
 namespace {
-constexpr size_t kDoorsByte = 2, kHandByte = 3, kSlotBytes = 4;
+constexpr size_t kDoorsByte = 2, kHandByte = 3, kSlotBytes = 4, kLayoutBytes = kSlotBytes + kKitchenObjects;
 }
 
 WorldState pack(const KitchenState& state) {
@@ -17,6 +17,8 @@ WorldState pack(const KitchenState& state) {
   world.bytes[kDoorsByte] = state.doors;
   world.bytes[kHandByte] = state.hand;
   std::copy(state.slots.begin(), state.slots.end(), world.bytes.begin() + kSlotBytes);
+  world.bytes[kLayoutBytes] = uint8_t(state.layout);
+  world.bytes[kLayoutBytes + 1] = uint8_t(state.layout >> 8);
   world.steps = state.steps;
   return world;
 }
@@ -27,6 +29,7 @@ KitchenState unpack(const WorldState& world) {
   state.doors = world.bytes[kDoorsByte];
   state.hand = world.bytes[kHandByte];
   std::copy_n(world.bytes.begin() + kSlotBytes, kKitchenObjects, state.slots.begin());
+  state.layout = uint16_t(world.bytes[kLayoutBytes] | world.bytes[kLayoutBytes + 1] << 8);
   state.steps = world.steps;
   return state;
 }
@@ -114,6 +117,30 @@ WorldStep kitchen_step(const KitchenTables& tables, KitchenTask task, KitchenSta
   }
   step.truncated = !step.terminated && state.steps >= kKitchenStepLimit;
   return step;
+}
+
+std::vector<bool> kitchen_reachable(const KitchenTables& tables, const std::array<uint8_t, kKitchenObjects>& slots) {
+  constexpr size_t kHands = kKitchenObjects + 1;
+  const size_t poses = tables.poses.size();
+  std::vector<bool> reached(kDoorStates * poses * kHands, false);
+  std::vector<size_t> open;
+  const auto reach = [&](int doors, int pose, int hand) {
+    const size_t at = (size_t(doors) * poses + size_t(pose)) * kHands + size_t(hand);
+    if (reached[at]) return;
+    reached[at] = true;
+    open.push_back(at);
+  };
+  for (const uint16_t pose : tables.start_poses) reach(0, pose, kEmptyHand);
+  while (!open.empty()) {
+    const size_t at = open.back();
+    open.pop_back();
+    const int hand = int(at % kHands), pose = int(at / kHands % poses), doors = int(at / kHands / poses);
+    for (int move = 0; move < kKitchenMoves; ++move) reach(doors, tables.next_pose(pose, move), hand);
+    if (const int door = door_in_reach(tables, pose, doors); door >= 0) reach(doors ^ 1 << door, pose, hand);
+    if (hand != kEmptyHand) continue;
+    if (const int object = object_in_reach(tables, pose, doors, slots); object >= 0) reach(doors, pose, object);
+  }
+  return reached;
 }
 
 bool kitchen_valid(const KitchenTables& tables, KitchenTask task, const WorldState& world) {

@@ -10,6 +10,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "base/random.h"
 #include "world/kitchen_tables.h"
@@ -35,10 +36,11 @@ struct KitchenState {
   uint8_t hand = kEmptyHand;
   std::array<uint8_t, kKitchenObjects> slots = {};  // of the objects
   uint16_t steps = 0;
+  uint16_t layout = 0;  // of those that a kitchen from a file has (kitchen_scene.h); tables and slots are that layout's
   bool operator==(const KitchenState&) const = default;
 };
 
-// A world's bytes: the pose in two, low one first, then doors, hand, slots; the rest is zero.
+// A world's bytes: the pose in two, low one first, then doors, hand, slots, the layout in two; the rest is zero.
 WorldState pack(const KitchenState& state);
 KitchenState unpack(const WorldState& state);
 
@@ -52,7 +54,10 @@ int object_in_reach(const KitchenTables& tables, int pose, int doors, const std:
 int door_in_reach(const KitchenTables& tables, int pose, int doors);
 // The receptacle that PickupPut would fill with an object in the hand, or -1.
 int receptacle_in_reach(const KitchenTables& tables, int pose, int doors);
-// Whether this can be a state of a running episode of a task.
+// Through what a running episode can come that begins with the objects on these slots, [doors, poses, kKitchenObjects + 1]: where the agent is, and what it
+// has in its hand, kEmptyHand for nothing.
+std::vector<bool> kitchen_reachable(const KitchenTables& tables, const std::array<uint8_t, kKitchenObjects>& slots);
+// Whether this can be a state of a running episode of a task; the layout is not looked at.
 bool kitchen_valid(const KitchenTables& tables, KitchenTask task, const WorldState& state);
 
 }  // namespace synpo

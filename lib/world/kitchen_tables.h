@@ -43,7 +43,7 @@ struct KitchenSight {
 
 struct KitchenTables {
   std::vector<KitchenPose> poses;     // no two alike
-  std::vector<KitchenCell> slots;     // no two alike
+  std::vector<KitchenCell> slots;     // where an object may lie; no two alike in a plan
   std::vector<uint16_t> start_poses;  // where an episode may start, all alike likely; ascending
   std::vector<uint16_t> next;         // [poses, kKitchenMoves]: the pose after a move; the same pose where the move fails
   std::array<std::shared_ptr<const KitchenSight>, kDoorStates> sight;  // by doors; may be one and the same

@@ -1,11 +1,10 @@
 // A world as the rooms behind this one see it: environments and tasks, rules, an expert, and what the agent sees. GridWorld (grid_set.h) and the
-// kitchens (kitchen_set.h) are two.
+// kitchens (kitchen_set.h, kitchen_scene.h) are two.
 #pragma once
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -91,6 +90,8 @@ class World {
   virtual bool at_choice(EnvTask pair, const WorldState& state) const = 0;
 
   virtual Sight sight() const = 0;
+  // What made the features, "name@hash": a policy goes with features of one extractor alone. Empty where observations are pictures.
+  virtual std::string extractor() const { return ""; }
   virtual size_t observation_size() const = 0;  // bytes
   // `window` is the radius of what is seen, where the world has one.
   virtual void observe(int env, const StateHistory& history, int window, uint8_t* observation) const = 0;
@@ -112,11 +113,5 @@ class World {
   // The kind of a step whose right action is `label`.
   StepKind kind(EnvTask pair, const WorldState& state, int label) const;
 };
-
-// The world of a name on the command line: "gridworld", "gridworld:DIR", "kitchen" or "kitchen:DIR". Throws kUsage for another, kData and kNoInput
-// for what is wrong with its files.
-std::unique_ptr<World> open_world(const std::string& name);
-// A world by its name() from environments() as a file has kept them. Throws kData where content and hash differ or content is malformed.
-std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments);
 
 }  // namespace synpo

@@ -23,6 +23,7 @@
 #include "base/random.h"
 #include "learn/episode.h"
 #include "learn/model.h"
+#include "learn/open.h"
 #include "learn/ppo.h"
 #include "learn/recipe.h"
 #include "learn/running_episode.h"

@@ -40,6 +40,10 @@ SafeTensors small_file() {
   const int64_t wholes[2] = {INT64_MIN, 7};
   const uint64_t big[1] = {~0ull};
   const uint8_t bytes[3] = {0, 128, 255};
+  const int32_t ints[2] = {INT32_MIN, -1};
+  const Half halves[3] = {{0x3c00}, {0x8000}, {0x7bff}};
+  file.add("h", {3}, halves, 3);
+  file.add("n", {1, 2}, ints, 2);
   file.add("f", {2, 3}, floats, 6);
   file.add("d", {}, reals, 1);
   file.add("i", {2}, wholes, 2);
@@ -53,7 +57,7 @@ TEST(SafeTensors, ComesBack) {
   const std::string bytes = format_safetensors(small_file());
   const SafeTensors file = tensors_of(bytes);
   EXPECT_EQ(file.metadata, small_file().metadata);
-  ASSERT_EQ(file.tensors.size(), 6u);
+  ASSERT_EQ(file.tensors.size(), 8u);
   for (const auto& [name, tensor] : small_file().tensors) {
     EXPECT_EQ(file.tensors.at(name).shape, tensor.shape) << name;
     EXPECT_EQ(file.tensors.at(name).bytes, tensor.bytes) << name;
@@ -61,6 +65,8 @@ TEST(SafeTensors, ComesBack) {
   }
   EXPECT_EQ(file.get<int64_t>("i"), (std::vector<int64_t>{INT64_MIN, 7}));
   EXPECT_EQ(file.get<uint8_t>("b"), (std::vector<uint8_t>{0, 128, 255}));
+  EXPECT_EQ(file.get<int32_t>("n"), (std::vector<int32_t>{INT32_MIN, -1}));
+  EXPECT_EQ(to_float(file.get<Half>("h")[2]), 65504.0f);
   EXPECT_TRUE(file.get<uint8_t>("none").empty());
   EXPECT_EQ(format_safetensors(file), bytes);
   uint64_t length;
@@ -110,8 +116,8 @@ TEST(SafeTensors, RefusesBadTensors) {
   const std::string start = "65 cannot read IN: tensor 't': ";
   EXPECT_EQ(tensors_refused(safetensors(R"({"t":3})", 0)), start + "expected dtype, shape and data_offsets");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2])"), start + "expected dtype, shape and data_offsets");
-  EXPECT_EQ(tensor_refused(R"("dtype":"BF16","shape":[4],"data_offsets":[0,8])"), start + "type '\"BF16\"', this build reads F32, F64, I64, U8 and U64");
-  EXPECT_EQ(tensor_refused(R"("dtype":4,"shape":[4],"data_offsets":[0,8])"), start + "type '4', this build reads F32, F64, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":"BF16","shape":[4],"data_offsets":[0,8])"), start + "type '\"BF16\"', this build reads F16, F32, F64, I32, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":4,"shape":[4],"data_offsets":[0,8])"), start + "type '4', this build reads F16, F32, F64, I32, I64, U8 and U64");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":2,"data_offsets":[0,8])"), start + "shape is no array of at most 8 numbers");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[1,1,1,1,1,1,1,1,2],"data_offsets":[0,8])"), start + "shape is no array of at most 8 numbers");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[0,8,9])"), start + "data_offsets is no pair");

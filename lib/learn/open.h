@@ -1,0 +1,18 @@
+// The worlds by name.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "world/world.h"
+
+namespace synpo {
+
+// The world of a name on the command line: "gridworld", "gridworld:DIR", "kitchen" or "kitchen:DIR". Throws kUsage for another, kData and kNoInput
+// for what is wrong with its files.
+std::unique_ptr<World> open_world(const std::string& name);
+// A world by its name() from environments() as a file has kept them; those without content are taken from `source` by their names. Throws kData where
+// content is malformed, or where hashes differ, and kUsage where there is no source.
+std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments, const World* source = nullptr);
+
+}  // namespace synpo
