@@ -97,7 +97,8 @@ void draw_lettering(Canvas& canvas, const Box& box, int receptacle, int cell, Le
 
 void draw_sink_basin(Canvas& canvas, const Box& box, int cell) {
   const int inset = std::max(1, cell / 4);
-  canvas.frame({box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, std::max(1, cell / 14), between(receptacle_colour(kSink), kInk, 0.45));
+  canvas.frame({box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, std::max(1, cell / 14),
+               between(receptacle_colour(kSink), kInk, 0.45));
 }
 
 Sign floor_sign(const Kitchen& kitchen) {
