@@ -24,8 +24,8 @@ std::string caption_words(const KitchenMoment& moment, const KitchenPose& pose, 
   static const char* const kHeadings[] = {"up", "right", "down", "left"};
   const std::string next = moment.expert_action < 0 ? "success" : concat("the expert's next action: ", kKitchenActionNames[moment.expert_action]);
   const std::string looks = pose.horizon == 0 ? "level" : concat(std::abs(pose.horizon), "\u00b0 ", pose.horizon > 0 ? "down" : "up");
-  const std::string holds = hand == kEmptyHand ? "with an empty hand" : concat("with the ", kKitchenObjectNames[hand], " in its hand");
-  return concat(next, "; the agent faces ", kHeadings[pose.heading / 90], " in the plan, looks ", looks, " ", holds);
+  const std::string holds = hand == kEmptyHand ? "nothing" : concat("the ", kKitchenObjectNames[hand]);
+  return concat(next, "; the agent faces ", kHeadings[pose.heading / 90], " in the plan, looks ", looks, " and holds ", holds);
 }
 
 std::vector<KeyEntry> key_entries(KitchenTask task, const KitchenState& now) {
