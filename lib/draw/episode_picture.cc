@@ -65,7 +65,8 @@ void draw_way(Canvas& canvas, const PlanPlace& place, const Film& film, int mome
 std::vector<TimeMark> pick_marks(const Film& film) {
   std::vector<TimeMark> marks;
   for (int i = 0; i < film.steps(); ++i)
-    if (const int picked = treasure_picked(film, i); picked >= 0) marks.push_back({i + 1, on_treasure(picked, film.results[i].wrong ? draw_wrong : draw_picked)});
+    if (const int picked = treasure_picked(film, i); picked >= 0)
+      marks.push_back({i + 1, on_treasure(picked, film.results[i].wrong ? draw_wrong : draw_picked)});
   return marks;
 }
 

@@ -14,7 +14,8 @@ class HistoryRow {
 
   int height() const;
   // `draw` draws number i of kHistory, the oldest 0; of an episode that has had `count` states the first ones are missing.
-  void draw(Canvas& canvas, int x, int y, const std::string& heading, int count, const std::function<void(const Box& box, int i, bool missing)>& draw) const;
+  void draw(Canvas& canvas, int x, int y, const std::string& heading, int count,
+            const std::function<void(const Box& box, int i, bool missing)>& draw) const;
 
  private:
   Pixels px_;

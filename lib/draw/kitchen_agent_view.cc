@@ -24,12 +24,13 @@ std::string caption_words(const KitchenMoment& moment, const KitchenPose& pose, 
   static const char* const kHeadings[] = {"up", "right", "down", "left"};
   const std::string next = moment.expert_action < 0 ? "success" : concat("the expert's next action: ", kKitchenActionNames[moment.expert_action]);
   const std::string looks = pose.horizon == 0 ? "level" : concat(std::abs(pose.horizon), "\u00b0 ", pose.horizon > 0 ? "down" : "up");
-  const std::string holds = hand == kEmptyHand ? "with an empty hand" : concat("with the ", kKitchenObjectNames[hand], " in its hand");
-  return concat(next, "; the agent faces ", kHeadings[pose.heading / 90], " in the plan, looks ", looks, " ", holds);
+  const std::string holds = hand == kEmptyHand ? "nothing" : concat("the ", kKitchenObjectNames[hand]);
+  return concat(next, "; the agent faces ", kHeadings[pose.heading / 90], " in the plan, looks ", looks, " and holds ", holds);
 }
 
 std::vector<KeyEntry> key_entries(KitchenTask task, const KitchenState& now) {
-  std::vector<KeyEntry> key = {{{[](Canvas& canvas, const Box& box) { draw_looker(canvas, box, 0); }}, "agent"}, {{draw_sight_sign}, "its sight, to 1.5 m"}};
+  const Sign agent = [](Canvas& canvas, const Box& box) { draw_looker(canvas, box, 0); };
+  std::vector<KeyEntry> key = {{{agent}, "agent"}, {{draw_sight_sign}, "its sight, to 1.5 m"}};
   for (int i = 0; i < kKitchenObjects; ++i) {
     std::string name = kKitchenObjectNames[i];
     if (now.hand == i)
@@ -40,7 +41,8 @@ std::vector<KeyEntry> key_entries(KitchenTask task, const KitchenState& now) {
       name += " (pick up)";
     key.push_back({{name.ends_with("(pick up)") ? wanted_sign(i) : object_sign(i)}, name});
   }
-  for (int i = 0; i < kKitchenReceptacles; ++i) key.push_back({{receptacle_sign(i)}, concat(kKitchenReceptacleNames[i], i == task.receptacle ? " (put there)" : "")});
+  for (int i = 0; i < kKitchenReceptacles; ++i)
+    key.push_back({{receptacle_sign(i)}, concat(kKitchenReceptacleNames[i], i == task.receptacle ? " (put there)" : "")});
   key.push_back({{colour_sign(kPaperCounter)}, "counter"});
   key.push_back({{colour_sign(kPaperTable)}, "table"});
   return key;
@@ -72,7 +74,8 @@ Canvas draw_kitchen_view(const KitchenMoment& moment, const KitchenViewStyle& st
   const KitchenState state = unpack(moment.history.now());
 
   const int cell = px(std::min({kMostCellPt, kHighPt / kitchen.rows, kWidePt / kitchen.columns}));
-  const int high = std::max(px(kHighPt), kitchen.rows * cell), between = px(kBetweenPt), margin = px(kMarginPt), text = px(kTextPt), heading = text + px(8);
+  const int high = std::max(px(kHighPt), kitchen.rows * cell), between = px(kBetweenPt), margin = px(kMarginPt);
+  const int text = px(kTextPt), heading = text + px(8);
   const std::string plan_title = "(a) the kitchen from above";
   const int plan_width = std::max(kitchen.columns * cell, font.width(plan_title, text)), inside = plan_width + between + high;
 

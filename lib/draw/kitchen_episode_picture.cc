@@ -179,8 +179,12 @@ std::vector<KeyEntry> key_entries(const KitchenFilm& film, int cell) {
                                {{[](Canvas& canvas, const Box& box) { draw_looker(canvas, box, 0); }}, "end, and its heading"},
                                {{draw_turn_sign}, "turn to this heading"},
                                {{draw_grasp_sign}, "opens, picks or puts"}};
-  for (int i = 0; i < kKitchenObjects; ++i) key.push_back({{i == task.object ? wanted_sign(i) : object_sign(i)}, concat(kKitchenObjectNames[i], i == task.object ? " (pick up)" : "")});
-  for (int i = 0; i < kKitchenReceptacles; ++i) key.push_back({{receptacle_sign(i)}, concat(kKitchenReceptacleNames[i], i == task.receptacle ? " (put there)" : "")});
+  for (int i = 0; i < kKitchenObjects; ++i) {
+    const bool wanted = i == task.object;
+    key.push_back({{wanted ? wanted_sign(i) : object_sign(i)}, concat(kKitchenObjectNames[i], wanted ? " (pick up)" : "")});
+  }
+  for (int i = 0; i < kKitchenReceptacles; ++i)
+    key.push_back({{receptacle_sign(i)}, concat(kKitchenReceptacleNames[i], i == task.receptacle ? " (put there)" : "")});
   for (int i = 0; i < film.steps(); ++i) {
     const Deed deed = event_of(film, i).deed;
     const bool wrong = film.results[size_t(i)].wrong;
@@ -191,7 +195,9 @@ std::vector<KeyEntry> key_entries(const KitchenFilm& film, int cell) {
   return key;
 }
 
-int cell_within(const Kitchen& kitchen, double side_pt, const Pixels& px) { return px(std::min({kMostCellPt, side_pt / kitchen.rows, side_pt / kitchen.columns})); }
+int cell_within(const Kitchen& kitchen, double side_pt, const Pixels& px) {
+  return px(std::min({kMostCellPt, side_pt / kitchen.rows, side_pt / kitchen.columns}));
+}
 
 }  // namespace
 

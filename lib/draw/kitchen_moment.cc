@@ -73,7 +73,8 @@ void draw_sight(Canvas& canvas, const PlanPlace& place, const Kitchen& kitchen, 
 
 void draw_sight_sign(Canvas& canvas, const Box& box) {
   const Rgb shade = {uint8_t(255 - (255 - kSight.r) * 0.45), uint8_t(255 - (255 - kSight.g) * 0.45), uint8_t(255 - (255 - kSight.b) * 0.45)};
-  canvas.polygon({{box.x + box.width / 2.0, double(box.bottom())}, {double(box.x), box.y + 0.06 * box.height}, {double(box.right()), box.y + 0.06 * box.height}}, shade);
+  const double top = box.y + 0.06 * box.height;
+  canvas.polygon({{box.x + box.width / 2.0, double(box.bottom())}, {double(box.x), top}, {double(box.right()), top}}, shade);
 }
 
 Box object_box(const PlanPlace& place, int cell) {

@@ -52,10 +52,18 @@ void draw_stroke(Canvas& canvas, const std::vector<Point>& points, double width,
   canvas.paint(stroke_mask(points, width, {}, {0, 0, canvas.width(), canvas.height()}), colour);
 }
 
+double door_thickness(double cell) { return std::max(2.0, cell * 0.2); }
+
+// What a closed door leaves of a box, its inset included.
+Box behind_door(const Box& box, int back, int cell) {
+  const int thick = int(std::lround(1.3 * door_thickness(cell))), front = (back + 2) % 4;
+  return {box.x + (front == 3 ? thick : 0), box.y + (front == 0 ? thick : 0), box.width - (front % 2 ? thick : 0), box.height - (front % 2 ? 0 : thick)};
+}
+
 void draw_front(Canvas& canvas, const Box& box, int back, bool open, double cell, Rgb colour) {
   const Front front(box, back);
   if (!open) {
-    const double thick = std::max(2.0, cell * 0.2), inset = 0.5 * thick;
+    const double thick = door_thickness(cell), inset = 0.5 * thick;
     const double from = 0.06, to = 0.94;
     canvas.polygon({front.at(from, -inset), front.at(to, -inset), front.at(to, -inset - thick), front.at(from, -inset - thick)},
                    between(colour, kInk, 0.75));
@@ -97,7 +105,8 @@ void draw_lettering(Canvas& canvas, const Box& box, int receptacle, int cell, Le
 
 void draw_sink_basin(Canvas& canvas, const Box& box, int cell) {
   const int inset = std::max(1, cell / 4);
-  canvas.frame({box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, std::max(1, cell / 14), between(receptacle_colour(kSink), kInk, 0.45));
+  canvas.frame({box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, std::max(1, cell / 14),
+               between(receptacle_colour(kSink), kInk, 0.45));
 }
 
 Sign floor_sign(const Kitchen& kitchen) {
@@ -176,7 +185,8 @@ void draw_kitchen(Canvas& canvas, const PlanPlace& place, const Kitchen& kitchen
       draw_front(canvas, box, kitchen.receptacles[size_t(i)].back, open, place.cell, receptacle_colour(i));
     else
       draw_sink_basin(canvas, box, place.cell);
-    draw_lettering(canvas, box, i, place.cell, lettering, open ? paper_colour(kInsideColour) : receptacle_colour(i));
+    const Box free = i < kKitchenDoors && !open ? behind_door(box, kitchen.receptacles[size_t(i)].back, place.cell) : box;
+    draw_lettering(canvas, free, i, place.cell, lettering, open ? paper_colour(kInsideColour) : receptacle_colour(i));
   }
 }
 

@@ -13,7 +13,8 @@ constexpr double kTextPt = 9, kLabelPt = 7.5, kLinePt = 10;
 
 Strip::Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px, const Font& font)
     : heading_(std::move(heading)), pictures_(std::move(pictures)), px_(px), gap_(px(8)), line_(px(1.5)),
-      side_(std::max(1, ((width + gap_) / columns - gap_ - 2 * line_) / unit) * unit + 2 * line_), columns_(std::min(columns, (width + gap_) / (side_ + gap_))),
+      side_(std::max(1, ((width + gap_) / columns - gap_ - 2 * line_) / unit) * unit + 2 * line_),
+      columns_(std::min(columns, (width + gap_) / (side_ + gap_))),
       columns_gap_((width - columns_ * side_) / (columns_ - 1)) {
   for (const StripPicture& picture : pictures_) {
     labels_.push_back(font.wrapped(picture.label, px(kLabelPt), side_ + columns_gap_ - px(6)));

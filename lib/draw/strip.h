@@ -16,7 +16,7 @@ struct StripPicture {
 
 class Strip {
  public:
-  // In a strip `width` pixels wide, at most `columns` in a row, labels broken where they are wider than that leaves room; the side of a picture is a multiple of `unit` pixels.
+  // In a strip `width` pixels wide, at most `columns` in a row; the side of a picture is a multiple of `unit` pixels. Labels that are wider are broken.
   Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px, const Font& font);
 
   int height() const;  // 0 without pictures
