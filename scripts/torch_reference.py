@@ -1,13 +1,11 @@
 #!/usr/bin/python3
-"""The learning of synpo in PyTorch, by imitation and by PPO: the reference of the C++ engine.
+"""The imitation-learning step of synpo in PyTorch: the reference of the C++ engine.
 
-  torch_reference.py dump -o FILE [--method NAME] [--batch N] [--seed S] [widths]
+  torch_reference.py dump -o FILE [--method NAME] [--sight pictures|features] [--batch N] [--seed S] [widths]
       one training step in float64 on a random model and batch, as safetensors
   torch_reference.py check FILE
       the same step in float32 from the file's parameters and inputs, against the file's results
-  torch_reference.py ppo -o FILE [--seed S]
-      what PPO is made of, in float64: advantages, the clipped loss and its gradients, RMSProp
-  torch_reference.py bench --mode train|forward --batch N --threads T [--seconds S]
+  torch_reference.py bench --mode train|forward --batch N --threads T [--sight pictures|features] [--seconds S]
       states per second in float32 at full width, one number on stdout
   torch_reference.py committed -o tests/data
       the dumps that are in the tree
@@ -37,17 +35,23 @@ from torch import nn
 from torch.nn import functional as F
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
-ACTIONS = 5
+ACTIONS = dict(pictures=5, features=7)
 STRIDES = (2, 2, 2, 1)
-NARROW = dict(channels=(8, 16, 24, 32), feature=16, basis=12, embedding=10, hidden=24, action_embedding=0, head_hidden=20, seam=6,
-              envs=4, tasks=5)
-FULL = dict(channels=(32, 64, 128, 256), feature=128, basis=128, embedding=128, hidden=512, action_embedding=0, head_hidden=1024,
-            seam=32, envs=20, tasks=20)
+HISTORY, HAND = 4, 16  # views, and numbers about the hand behind them
+# Widths by sight: of pictures (GridWorld), of features (the kitchens).
+NARROW_HEAD = dict(feature=16, basis=12, embedding=10, hidden=24, action_embedding=0, head_hidden=20, seam=6, envs=4, tasks=5)
+NARROW = dict(pictures=dict(channels=(8, 16, 24, 32), **NARROW_HEAD),
+              features=dict(view=20, view_channels=18, objects=4, object_embedding=3, view_hidden=21, **NARROW_HEAD))
+FULL_HEAD = dict(basis=128, embedding=128, hidden=512, action_embedding=0, head_hidden=1024, seam=32)
+FULL = dict(pictures=dict(channels=(32, 64, 128, 256), feature=128, envs=20, tasks=20, **FULL_HEAD),
+            features=dict(view=2048, view_channels=1024, objects=8, object_embedding=32, view_hidden=2048, feature=256, envs=19, tasks=21,
+                          **FULL_HEAD))
 SMALL = "--channels 4,4,4,5 "
+FEATURES = "--sight features "
 COMMITTED = dict(narrow="", general=SMALL + "--action-embedding 3", mtl=SMALL + "--method mtl",
                  mtl_general=SMALL + "--method mtl --action-embedding 7", mlp=SMALL + "--method mlp",
                  modulenet=SMALL + "--method modulenet", sf_td=SMALL + "--method sf", sf_q=SMALL + "--method sf --sf-loss q",
-                 sf_ce=SMALL + "--method sf --sf-loss ce")
+                 sf_ce=SMALL + "--method sf --sf-loss ce", temporal=FEATURES, temporal_mlp=FEATURES + "--method mlp")
 REWARD_WEIGHT = 0.01
 DISCOUNT = 0.9
 TERMINAL, UNKNOWN = -1, -2  # in place of the step behind
@@ -97,6 +101,47 @@ class Encoder(nn.Module):
         return self.fc(x.permute(0, 2, 3, 1).flatten(1))  # (y, x, channel)
 
 
+class TemporalEncoder(nn.Module):
+    """psi(s) of Table 3: [N, HISTORY * view + HAND] -> [N, d]. The views stand oldest first; behind them the number of what the hand holds."""
+
+    def __init__(self, w):
+        super().__init__()
+        self.conv1 = nn.Conv1d(w.view, w.view_channels, 3, 2, 1)
+        self.relu1 = nn.ReLU(inplace=True)
+        self.conv2 = nn.Conv1d(w.view_channels, w.view_channels, 3, 2, 1)
+        self.relu2 = nn.ReLU(inplace=True)
+        self.object = empty(w.objects, w.object_embedding)
+        self.fc = Mlp(w.view_channels + w.object_embedding, w.view_hidden, w.feature)
+
+    def convolve(self, x):
+        x = x.view(len(x), HISTORY, -1).transpose(1, 2)
+        return self.relu2(self.conv2(self.relu1(self.conv1(x)))).flatten(1)
+
+    def forward(self, x):
+        return self.fc(torch.cat([self.convolve(x[:, :-HAND]), self.object[x[:, -HAND].long()]], 1))
+
+
+class UnrolledEncoder(TemporalEncoder):
+    """The same with matrices in place of convolutions, and nothing multiplied with the padding. bench keeps the faster one."""
+
+    def __init__(self, w, encoder):
+        super().__init__(w)
+        for name in ("conv1", "conv2"):
+            conv = getattr(encoder, name)
+            linear = nn.Linear(3 * conv.in_channels, conv.out_channels)
+            with torch.no_grad():
+                linear.weight.copy_(conv.weight.permute(0, 2, 1).flatten(1))
+                linear.bias.copy_(conv.bias)
+            setattr(self, name, linear)
+        self.object, self.fc = encoder.object, encoder.fc
+
+    def convolve(self, x):
+        view, channels = x.shape[1] // HISTORY, self.conv2.out_features
+        first = F.linear(x[:, :2 * view], self.conv1.weight[:, view:], self.conv1.bias)
+        y = self.relu1(torch.cat([first, self.conv1(x[:, view:])], 1))
+        return self.relu2(F.linear(y, self.conv2.weight[:, channels:], self.conv2.bias))
+
+
 class Mlp(nn.Module):
     def __init__(self, inputs, hidden, outputs):
         super().__init__()
@@ -112,6 +157,11 @@ def empty(*shape):
     return nn.Parameter(torch.zeros(*shape))
 
 
+def widths(sizes, sight, **others):
+    """A method's widths."""
+    return SimpleNamespace(**sizes, sight=sight, actions=ACTIONS[sight], **others)
+
+
 class Policy(nn.Module):
     """What methods share: encoder, embeddings (of "env", "task"), the losses of reward and disentanglement.
 
@@ -120,7 +170,7 @@ class Policy(nn.Module):
     def __init__(self, w, embeddings):
         super().__init__()
         self.w = w
-        self.encoder = Encoder(w.channels, w.feature)
+        self.encoder = Encoder(w.channels, w.feature) if w.sight == "pictures" else TemporalEncoder(w)
         if embeddings:
             self.embedding = nn.ParameterDict({name: empty(getattr(w, name + "s"), w.embedding) for name in embeddings})
 
@@ -141,11 +191,11 @@ class SynPo(Policy):
         super().__init__(w, embeddings)
         self.alpha = Mlp(len(embeddings) * w.embedding, w.hidden, w.basis)
         self.beta = Mlp(len(embeddings) * w.embedding, w.hidden, w.basis)
-        self.theta = empty(w.action_embedding or ACTIONS, w.feature, w.basis)
+        self.theta = empty(w.action_embedding or w.actions, w.feature, w.basis)
         if w.action_embedding:
-            self.phi = empty(ACTIONS, w.action_embedding)
-        self.policy = nn.ParameterDict({"bias": empty(ACTIONS)})
-        self.reward = nn.ParameterDict({"bias": empty(ACTIONS)})
+            self.phi = empty(w.actions, w.action_embedding)
+        self.policy = nn.ParameterDict({"bias": empty(w.actions)})
+        self.reward = nn.ParameterDict({"bias": empty(w.actions)})
         for name in embeddings:
             self.add_module("f_" + name, Mlp(w.basis, w.hidden, w.embedding))
 
@@ -206,8 +256,8 @@ class MultiTask(SynPo):
 class OneMlp(Policy):
     def __init__(self, w):
         super().__init__(w, ("env", "task"))
-        self.policy = Mlp(w.feature + 2 * w.embedding, w.head_hidden, ACTIONS)
-        self.reward = Mlp(w.feature + 2 * w.embedding, w.head_hidden, ACTIONS)
+        self.policy = Mlp(w.feature + 2 * w.embedding, w.head_hidden, w.actions)
+        self.reward = Mlp(w.feature + 2 * w.embedding, w.head_hidden, w.actions)
         self.f_env = Mlp(w.feature, w.hidden, w.embedding)
         self.f_task = Mlp(w.feature, w.hidden, w.embedding)
 
@@ -233,7 +283,7 @@ class ModuleNet(Policy):
     def __init__(self, w):
         super().__init__(w, ())
         modules = {f"task{i}": Mlp(w.feature, w.head_hidden, w.seam) for i in range(w.tasks)}
-        modules.update({f"env{i}": Mlp(w.seam, w.head_hidden, ACTIONS) for i in range(w.envs)})
+        modules.update({f"env{i}": Mlp(w.seam, w.head_hidden, w.actions) for i in range(w.envs)})
         self.module = nn.ModuleDict(modules)
 
     def each(self, kind, x, batch):
@@ -254,15 +304,15 @@ class ModuleNet(Policy):
 class SuccessorFeatures(Policy):
     def __init__(self, w):
         super().__init__(w, ("env", "task"))
-        self.phi = Mlp(w.feature, w.head_hidden, ACTIONS * w.embedding)
-        self.psi = Mlp(w.feature + 2 * w.embedding, w.head_hidden, ACTIONS * w.embedding)
+        self.phi = Mlp(w.feature, w.head_hidden, w.actions * w.embedding)
+        self.psi = Mlp(w.feature + 2 * w.embedding, w.head_hidden, w.actions * w.embedding)
 
     def summed(self):
         return (self.phi, self.w.embedding), (self.psi, self.w.embedding)
 
     def features(self, feature, batch):
         """psi(s, a; z): [N, A, E]."""
-        return self.psi(torch.cat([feature, self.embedded(batch)], 1)).view(len(feature), ACTIONS, -1)
+        return self.psi(torch.cat([feature, self.embedded(batch)], 1)).view(len(feature), self.w.actions, -1)
 
     def values(self, psi, batch):
         return (psi * self.embedding["task"][batch["task"]].unsqueeze(1)).sum(2)
@@ -279,7 +329,7 @@ class SuccessorFeatures(Policy):
 
     def losses(self, batch):
         feature = self.encoder(batch["input"])
-        phi = self.phi(feature).view(len(feature), ACTIONS, -1)[torch.arange(len(feature)), batch["taken"]]
+        phi = self.phi(feature).view(len(feature), self.w.actions, -1)[torch.arange(len(feature)), batch["taken"]]
         psi = self.features(feature, batch)
         q = self.values(psi, batch)
         policy_loss = {"td": lambda: self.temporal_difference(phi, psi, batch), "q": lambda: F.mse_loss(q, batch["planner_q"]),
@@ -314,7 +364,7 @@ def randomise(net, generator):
             head.out.weight /= math.sqrt(width)
 
 
-# --- pictures ------------------------------------------------------------------------------------
+# --- batches -------------------------------------------------------------------------------------
 
 FLOOR, WALL, AGENT = (50, 50, 50), (110, 80, 50), (255, 255, 255)
 TREASURES = ((255, 0, 0), (0, 0, 255), (0, 255, 0), (255, 170, 0), (170, 0, 255))
@@ -339,27 +389,39 @@ def pictures(count, rng):
     return images.reshape(count, 16, 16, 12)
 
 
-def random_batch(count, envs, tasks, rng, pairs=None):
+def features(count, w, rng):
+    """[N, HISTORY * view + HAND] F32, as TemporalEncoder takes it."""
+    views = rng.random((count, HISTORY, w.view), np.float32)
+    for view in views:
+        view[:rng.choice((0, 0, 0, 1, 2, 3))] = 0  # at an episode's start there are no earlier ones
+    hand = np.zeros((count, HAND), np.float32)
+    hand[:, 0] = rng.integers(0, w.objects, count)
+    return np.concatenate([views.reshape(count, -1), hand], 1)
+
+
+def random_batch(count, w, rng, pairs=None):
     """Arrays as they stand in the file; pairs: draw from that many distinct pairs only."""
-    pair = rng.choice(rng.permutation(envs * tasks)[:pairs], count)
-    label = rng.integers(0, ACTIONS, count)
-    taken = np.where(rng.random(count) < 0.5, rng.integers(0, ACTIONS, count), label)
+    pair = rng.choice(rng.permutation(w.envs * w.tasks)[:pairs], count)
+    label = rng.integers(0, w.actions, count)
+    taken = np.where(rng.random(count) < 0.5, rng.integers(0, w.actions, count), label)
     if count > 1 and (taken == label).all():
-        taken[0] = (label[0] + 1) % ACTIONS
-    return dict(input=pictures(count, rng), env=pair // tasks, task=pair % tasks, label=label, taken=taken,
+        taken[0] = (label[0] + 1) % w.actions
+    seen = pictures(count, rng) if w.sight == "pictures" else features(count, w, rng)
+    return dict(input=seen, env=pair // w.tasks, task=pair % w.tasks, label=label, taken=taken,
                 reward=rng.choice((-0.01, -0.02, 0.99, 10.99, -10.01), count).astype(np.float32))
 
 
-def future(batch, rng):
+def future(batch, w, rng):
     """What SF's losses ask for besides: the step behind, or what stands in its place, and the planner's values."""
     count = len(batch["env"])
     return dict(next=np.concatenate([[TERMINAL, UNKNOWN], rng.integers(0, count, count - 2)]),
-                planner_q=rng.normal(size=(count, ACTIONS)).astype(np.float32))
+                planner_q=rng.normal(size=(count, w.actions)).astype(np.float32))
 
 
 def to_torch(batch, dtype):
     batch = {name: torch.from_numpy(array.copy()) for name, array in batch.items()}
-    batch["input"] = batch["input"].permute(0, 3, 1, 2).to(dtype) / 64
+    if batch["input"].dim() == 4:
+        batch["input"] = batch["input"].permute(0, 3, 1, 2).to(dtype) / 64
     return {name: tensor.to(dtype) if tensor.is_floating_point() else tensor for name, tensor in batch.items()}
 
 
@@ -408,6 +470,8 @@ def to_file(name, tensor):
     if tensor.dim() == 4:
         tensor = tensor.permute(2, 3, 1, 0)  # [ky, kx, in, out]
         tensor = tensor[0, 0] if ".shortcut." in name else tensor
+    elif tensor.dim() == 3 and name.endswith(".weight"):
+        tensor = tensor.permute(2, 1, 0)  # [tap, in, out]
     elif tensor.dim() == 2 and name.endswith(".weight"):
         tensor = tensor.t()
     return np.ascontiguousarray(tensor.float().numpy())
@@ -419,6 +483,8 @@ def from_file(name, array):
         return tensor.t()[:, :, None, None]
     if tensor.dim() == 4:
         return tensor.permute(3, 2, 0, 1)
+    if tensor.dim() == 3 and name.endswith(".weight"):
+        return tensor.permute(2, 1, 0)
     return tensor.t() if tensor.dim() == 2 and name.endswith(".weight") else tensor
 
 
@@ -454,8 +520,8 @@ def step_results(net, batch, weights):
 
 
 def dump(args):
-    widths = {key: value if getattr(args, key) is None else getattr(args, key) for key, value in (FULL if args.full else NARROW).items()}
-    shape = SimpleNamespace(**widths, sf_loss=args.sf_loss)
+    sizes = {key: value if getattr(args, key) is None else getattr(args, key) for key, value in (FULL if args.full else NARROW)[args.sight].items()}
+    shape = widths(sizes, args.sight, sf_loss=args.sf_loss)
     batch_size = args.batch or (4 if args.full else 6)
     weights = dict(policy=1, reward=REWARD_WEIGHT, env=args.weight_env, task=args.weight_task)
     for seed in range(args.seed, args.seed + 1000):
@@ -465,15 +531,15 @@ def dump(args):
         net.double()
         tensors = {"param." + file_name(name): to_file(name, p) for name, p in net.named_parameters()}
         rng = np.random.default_rng(seed)
-        batch = random_batch(batch_size, shape.envs, shape.tasks, rng, pairs=2 * batch_size // 3 or 1)  # some pairs occur twice
+        batch = random_batch(batch_size, shape, rng, pairs=2 * batch_size // 3 or 1)  # some pairs occur twice
         if args.method == "sf":
-            batch.update(future(batch, rng))
+            batch.update(future(batch, shape, rng))
         result, margin = step_results(net, to_torch(batch, torch.float64), weights)
         if margin > args.margin:
             break
     else:
         sys.exit("torch_reference: no seed keeps every ReLU input away from zero; lower --margin")
-    metadata = {key: ",".join(map(str, value)) if key == "channels" else str(value) for key, value in widths.items()}
+    metadata = {key: ",".join(map(str, value)) if key == "channels" else str(value) for key, value in sizes.items()}
     metadata.update({"weight_" + name: str(weight) for name, weight in weights.items() if name != "policy"})
     metadata.update(method=args.method, sf_loss=args.sf_loss, discount=str(DISCOUNT), learning_rate=str(ADAM["lr"]),
                     weight_decay=str(ADAM["weight_decay"]), seed=str(seed), min_relu=f"{margin:.3g}")
@@ -484,9 +550,10 @@ def dump(args):
 def check(args):
     """Prints the worst relative error per kind of tensor; fails over 1e-4."""
     tensors, metadata = read_safetensors(args.file)
-    widths = {key: int(metadata[key]) for key in FULL if key != "channels"}
-    channels = tuple(map(int, metadata["channels"].split(",")))
-    net = METHODS[metadata["method"]](SimpleNamespace(**widths, channels=channels, sf_loss=metadata["sf_loss"]))
+    sight = "pictures" if "channels" in metadata else "features"
+    number = lambda text: tuple(map(int, text.split(","))) if "," in text else int(text)
+    sizes = {key: number(metadata[key]) for key in FULL[sight]}
+    net = METHODS[metadata["method"]](widths(sizes, sight, sf_loss=metadata["sf_loss"]))
     with torch.no_grad():
         for name, p in net.named_parameters():
             p.copy_(from_file(name, tensors["param." + file_name(name)]))
@@ -505,91 +572,6 @@ def check(args):
     print(f"smallest |ReLU input| {margin:.3g}", file=sys.stderr)
     if not max(worst.values())[0] < 1e-4:
         sys.exit("torch_reference: float32 and the file disagree")
-
-
-# --- ppo -----------------------------------------------------------------------------------------
-
-GOES_ON, TERMINATED, TRUNCATED = range(3)
-GAMMA, LAMBDA = 0.99, 0.95
-CLIP, ENTROPY_WEIGHT, GRADIENT_NORM = 0.1, 0.01, 0.5
-RMSPROP = dict(lr=0.01, alpha=0.99, eps=1e-8, weight_decay=0.1)
-
-
-def advantages(reward, value, end, cut_value, last_value):
-    """By the definition: the sum of (gamma lambda)^l delta_(t+l) up to the episode's end."""
-    next_value = torch.cat([value[1:], last_value[None]])
-    next_value = torch.where(end == TRUNCATED, cut_value, next_value) * (end != TERMINATED)
-    delta = reward + GAMMA * next_value - value
-    result = torch.zeros_like(delta)
-    for t, lane in itertools.product(*map(range, delta.shape)):
-        for later in range(t, len(delta)):
-            result[t, lane] += (GAMMA * LAMBDA) ** (later - t) * delta[later, lane]
-            if end[later, lane] != GOES_ON:
-                break
-    return result
-
-
-def advantage_results(rng, steps=9, lanes=3):
-    """Lane 0 ends twice, lane 1 is cut and then ends with the rollout, lane 2 goes on."""
-    end = np.zeros((steps, lanes), np.uint8)
-    end[2, 0] = end[6, 0] = end[steps - 1, 1] = TERMINATED
-    end[4, 1] = TRUNCATED
-    draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
-    given = dict(reward=draw(steps, lanes), value=draw(steps, lanes), end=end, cut_value=draw(steps, lanes), last_value=draw(lanes))
-    tensors = {name: torch.from_numpy(array if name == "end" else array.astype(np.float64)) for name, array in given.items()}
-    return {**given, "advantage": advantages(**tensors).numpy()}
-
-
-def ppo_losses(logits, action, old_log_probability, advantage, value, target):
-    """Mean -objective, half-squared error of the value, and entropy."""
-    distribution = torch.distributions.Categorical(logits=logits)
-    ratio = (distribution.log_prob(action) - old_log_probability).exp()
-    objective = torch.min(ratio * advantage, ratio.clamp(1 - CLIP, 1 + CLIP) * advantage)
-    return -objective.mean(), 0.5 * F.mse_loss(value, target), distribution.entropy().mean(), ratio
-
-
-def clipped_results(rng, count=24):
-    """Ratios below, within and above the clip, for advantages of both signs, and off its edges by more than float32 rounds."""
-    draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
-    logits, action = draw(count, ACTIONS), rng.integers(0, ACTIONS, count)
-    wanted = np.resize((0.6, 0.87, 0.93, 1.06, 1.13, 1.7), count) * rng.uniform(0.99, 1.01, count)
-    advantage = np.abs(draw(count)) * np.where(np.arange(count) // 6 % 2, 1, -1).astype(np.float32)
-    log_probability = F.log_softmax(torch.from_numpy(logits).double(), 1)[torch.arange(count), torch.from_numpy(action)].numpy()
-    given = dict(logits=logits, action=action, old_log_probability=(log_probability - np.log(wanted)).astype(np.float32),
-                 advantage=advantage, predicted=draw(count), target=draw(count))
-    tensors = {name: torch.from_numpy(array.astype(np.float64) if array.dtype == np.float32 else array) for name, array in given.items()}
-    leaves = [tensors[name].requires_grad_() for name in ("logits", "predicted")]
-    policy, value, entropy, ratio = ppo_losses(*tensors.values())
-    (policy + value - ENTROPY_WEIGHT * entropy).backward()
-    extremes = [(ratio - 1 - ratio.log()).mean(), ((ratio - 1).abs() > CLIP).double().mean(), ratio.max(), ratio.min()]
-    return {**given, "losses": np.array([x.item() for x in (policy, value, entropy, *extremes)]),
-            "dlogits": leaves[0].grad.numpy(), "dpredicted": leaves[1].grad.numpy()}
-
-
-def rmsprop_results(rng, steps=3):
-    """Gradients of two tensors, of which the last step's together are shorter than the clip."""
-    draw = lambda *shape: rng.normal(size=shape)
-    parameters = [nn.Parameter(torch.from_numpy(draw(count))) for count in (7, 4)]
-    gradients = draw(steps, 11) * np.array([1, 3, 0.05])[:, None]
-    joined = lambda tensors: torch.cat(tensors).detach().numpy().copy()
-    start, after = joined(parameters), []
-    optimiser = torch.optim.RMSprop(parameters, **RMSPROP)
-    for gradient in torch.from_numpy(gradients):
-        for parameter, part in zip(parameters, gradient.split((7, 4))):
-            parameter.grad = part.clone()
-        nn.utils.clip_grad_norm_(parameters, GRADIENT_NORM)
-        optimiser.step()
-        after.append(joined(parameters))
-    square = joined([optimiser.state[parameter]["square_avg"] for parameter in parameters])
-    return dict(parameter=start, gradient=gradients, after=np.stack(after), square=square)
-
-
-def ppo(args):
-    rng = np.random.default_rng(args.seed)
-    parts = dict(gae=advantage_results(rng), clip=clipped_results(rng), rmsprop=rmsprop_results(rng))
-    tensors = {f"{part}.{name}": array for part, results in parts.items() for name, array in results.items()}
-    metadata = dict(discount=GAMMA, **{"lambda": LAMBDA}, clip=CLIP, entropy=ENTROPY_WEIGHT, gradient_norm=GRADIENT_NORM, **RMSPROP)
-    write_safetensors(args.output, tensors, {key: str(value) for key, value in metadata.items()})
 
 
 # --- bench ---------------------------------------------------------------------------------------
@@ -612,8 +594,10 @@ def fused(encoder):
     return encoder
 
 
-def make_step(mode, net, batches, memory_format, head, foreach):
+def make_step(mode, net, batches, head, foreach, memory_format="contiguous", unrolled=False):
     """A function that does one step on the next batch."""
+    if unrolled:
+        net.encoder = UnrolledEncoder(net.w, net.encoder)
     layout = torch.channels_last if memory_format == "channels_last" else torch.contiguous_format
     net = net.to(memory_format=layout)
     batches = itertools.cycle([{**b, "input": b["input"].contiguous(memory_format=layout)} for b in batches])
@@ -648,37 +632,53 @@ def step_times(step, seconds):
     return times
 
 
-def bench(args):
+def prepare(threads):
+    """Sets PyTorch up to be as fast as it can be."""
     if not fast_blas():
         sys.exit("torch_reference: PyTorch runs on the reference BLAS, no fair comparison; install libopenblas0-openmp")
     # Keeps freed memory (no mmap, no trimming): fresh pages in every step would cost PyTorch some 7 %.
     libc = ctypes.CDLL(None)
     for option, value in ((-4, 0), (-1, 2**31 - 1), (-2, 1 << 26)):  # M_MMAP_MAX, M_TRIM_THRESHOLD, M_TOP_PAD
         libc.mallopt(option, value)
-    torch.set_num_threads(args.threads)
+    torch.set_num_threads(threads)
     torch.set_flush_denormal(True)
-    rng = np.random.default_rng(0)
-    net = SynPo(SimpleNamespace(**FULL))
-    randomise(net, torch.Generator().manual_seed(0))
-    batches = [to_torch(random_batch(args.batch, 20, 20, rng, pairs=144), torch.float32) for _ in range(2)]
 
-    options = dict(memory_format=("channels_last", "contiguous"), head=("by_sum", "by_bmm", "by_matrix"),
-                   foreach=(True, False) if args.mode == "train" else (None,))
+
+def fastest(options, seconds):
+    """Of each option, given with its values, the one with which seconds(**choice) is least: one after the other, as they hardly
+    depend on each other."""
     choice = {key: values[0] for key, values in options.items()}
-    trial = lambda: min(step_times(make_step(args.mode, copy.deepcopy(net), batches, **choice), 0.5))
-    best = trial()
-    for key, values in options.items():  # one after the other: they hardly depend on each other
+    best = seconds(**choice)
+    for key, values in options.items():
         for value in values[1:]:
             kept, choice[key] = choice[key], value
-            seconds = trial()
-            if seconds < best:
-                best = seconds
+            tried = seconds(**choice)
+            if tried < best:
+                best = tried
             else:
                 choice[key] = kept
-    times = step_times(make_step(args.mode, net, batches, **choice), args.seconds)
-    print("torch", torch.__version__, *(f"{key}={value}" for key, value in choice.items()),
-          f"best={args.batch / min(times):.0f}", file=sys.stderr)
-    print(f"{args.batch / statistics.median(times):.0f}")
+    return choice
+
+
+def report(states, times, choice):
+    print("torch", torch.__version__, *(f"{key}={value}" for key, value in choice.items()), f"best={states / min(times):.0f}", file=sys.stderr)
+    print(f"{states / statistics.median(times):.0f}")
+
+
+# What the fastest way may depend on.
+HEADS = dict(head=("by_sum", "by_bmm", "by_matrix"))
+OPTIONS = dict(pictures=dict(memory_format=("channels_last", "contiguous"), **HEADS), features=dict(unrolled=(False, True), **HEADS))
+
+
+def bench(args):
+    prepare(args.threads)
+    rng = np.random.default_rng(0)
+    net = SynPo(widths(FULL[args.sight], args.sight))
+    randomise(net, torch.Generator().manual_seed(0))
+    batches = [to_torch(random_batch(args.batch, net.w, rng, pairs=144), torch.float32) for _ in range(2)]
+    options = dict(OPTIONS[args.sight], foreach=(True, False) if args.mode == "train" else (None,))
+    choice = fastest(options, lambda **choice: min(step_times(make_step(args.mode, copy.deepcopy(net), batches, **choice), 0.5)))
+    report(args.batch, step_times(make_step(args.mode, net, batches, **choice), args.seconds), choice)
 
 
 def parse(arguments):
@@ -687,6 +687,7 @@ def parse(arguments):
     p = commands.add_parser("dump")
     p.add_argument("-o", "--output", required=True)
     p.add_argument("--method", choices=METHODS, default="synpo")
+    p.add_argument("--sight", choices=ACTIONS, default="pictures")
     p.add_argument("--sf-loss", choices=("td", "q", "ce"), default="td")
     p.add_argument("--full", action="store_true", help="full widths and a batch of 4 instead of narrow ones and 6")
     p.add_argument("--batch", type=int)
@@ -695,18 +696,15 @@ def parse(arguments):
     p.add_argument("--weight-env", type=float, default=0.1)
     p.add_argument("--weight-task", type=float, default=0.1)
     p.add_argument("--channels", type=lambda text: tuple(map(int, text.split(","))))
-    for name in FULL:
-        if name != "channels":
-            p.add_argument("--" + name.replace("_", "-"), type=int)
+    for name in sorted({*FULL["pictures"], *FULL["features"]} - {"channels"}):
+        p.add_argument("--" + name.replace("_", "-"), type=int)
     p = commands.add_parser("committed")
     p.add_argument("-o", "--output", required=True, help="folder")
-    p = commands.add_parser("ppo")
-    p.add_argument("-o", "--output", required=True)
-    p.add_argument("--seed", type=int, default=1)
     p = commands.add_parser("check")
     p.add_argument("file")
     p = commands.add_parser("bench")
     p.add_argument("--mode", choices=("train", "forward"), required=True)
+    p.add_argument("--sight", choices=ACTIONS, default="pictures")
     p.add_argument("--batch", type=int, required=True)
     p.add_argument("--threads", type=int, required=True)
     p.add_argument("--seconds", type=float, default=8)
@@ -716,12 +714,11 @@ def parse(arguments):
 def committed(args):
     for name, options in COMMITTED.items():
         dump(parse(["dump", "-o", f"{args.output}/torch_{name}.safetensors", *options.split()]))
-    ppo(parse(["ppo", "-o", f"{args.output}/torch_ppo.safetensors"]))
 
 
 def main():
     args = parse(sys.argv[1:])
-    {"dump": dump, "ppo": ppo, "committed": committed, "check": check, "bench": bench}[args.command](args)
+    {"dump": dump, "committed": committed, "check": check, "bench": bench}[args.command](args)
 
 
 if __name__ == "__main__":

@@ -82,7 +82,7 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
       .text(0, "resume", "FILE", "go on from such a checkpoint, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
-      .text('w', "world", "WORLD", "with --init: gridworld, gridworld:DIR, kitchen or kitchen:DIR; else kitchen:DIR, where kitchens lie in files of their own", s.world)
+      .text('w', "world", "WORLD", "with --init: gridworld, gridworld:DIR, kitchen or kitchen:DIR; else the folder of the checkpoint's scenes", s.world)
       .text('m', "method", "NAME", "with --init: the method", s.method)
       .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
       .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
@@ -106,9 +106,10 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .real(0, "smoothing", "X", "decay of its mean square", ppo.optimiser.smoothing, 0, 1)
       .real(0, "epsilon", "X", "RMSProp's epsilon", ppo.optimiser.epsilon, 0, 1)
       .real(0, "weight-decay", "X", "L2 term added to the gradient", ppo.optimiser.weight_decay, 0, 1)
-      .real(0, "reward-loss", "X", "weight of reward prediction", ppo.losses.reward, 0, 1e6)
-      .real(0, "env-loss", "X", "weight of environment disentanglement", ppo.losses.env, 0, 1e6)
-      .real(0, "task-loss", "X", "weight of task disentanglement", ppo.losses.task, 0, 1e6);
+      .real(0, "value-loss", "X", "weight of the value's loss", ppo.value_loss, 0, 1e6)
+      .real(0, "reward-loss", "X", "weight of reward prediction (the checkpoint's)", ppo.losses.reward, 0, 1e6)
+      .real(0, "env-loss", "X", "weight of environment disentanglement (the checkpoint's)", ppo.losses.env, 0, 1e6)
+      .real(0, "task-loss", "X", "weight of task disentanglement (the checkpoint's)", ppo.losses.task, 0, 1e6);
 }
 
 }  // namespace
@@ -132,6 +133,10 @@ int ppo(int argc, char** argv) {
   catch_stop_signals();
   Parallel parallel{int(s.threads)};
   const Checkpoint from = resumes ? load_checkpoint(s.resume) : random ? Checkpoint() : load_checkpoint(s.checkpoint);
+  const LossWeights weights = auxiliary_losses(from, tuning.losses);
+  if (!options.given("reward-loss")) tuning.losses.reward = weights.reward;
+  if (!options.given("env-loss")) tuning.losses.env = weights.env;
+  if (!options.given("task-loss")) tuning.losses.task = weights.task;
   const bool fresh = random && !resumes;
   // With --init the checkpoint of --resume may hold its world, whatever -w says.
   const bool needs_world = options.given("world") && (!random || lies_in_files(from));

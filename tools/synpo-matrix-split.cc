@@ -5,19 +5,12 @@
 
 #include "base/error.h"
 #include "format/pairs.h"
+#include "learn/open.h"
 #include "synpo-matrix.h"
-#include "world/maze.h"
 #include "world/split.h"
-#include "world/task.h"
 
 namespace synpo {
 namespace {
-
-std::vector<std::string> env_names(const std::string& world) {
-  std::vector<std::string> names;
-  for (const Maze& maze : open_mazes(world)) names.push_back(maze.name);
-  return names;
-}
 
 // Names of a world that this program does not know: those listed, or so many with numbers.
 std::vector<std::string> any_names(const std::string& option, const std::string& chosen, const std::string& stem) {
@@ -59,7 +52,7 @@ int matrix_split(int argc, char** argv) {
       .call(0, "cover", "COUNT", "at least so many seen per environment and task [4, or what -n allows]", count_into(plan.cover))
       .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
       .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR for the mapN.txt of a folder, or any for names of your own", world)
+      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own", world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")
@@ -75,10 +68,11 @@ int matrix_split(int argc, char** argv) {
     plan.envs = any_names("--envs", envs, "env");
     plan.tasks = any_names("--tasks", tasks, "task");
   } else {
-    plan.envs = choose_names("--envs", envs, env_names(world));
-    std::vector<std::string> task_names;
-    for (const Task& task : grid_tasks()) task_names.push_back(task.name());
-    plan.tasks = choose_names("--tasks", tasks, task_names);
+    const std::unique_ptr<World> opened = open_world(world);
+    std::vector<std::string> env_names;
+    for (const Environment& env : opened->environments()) env_names.push_back(env.name);
+    plan.envs = choose_names("--envs", envs, env_names);
+    plan.tasks = choose_names("--tasks", tasks, opened->task_names());
   }
   plan.seed = uint64_t(seed);
   plan.setting = int(setting);

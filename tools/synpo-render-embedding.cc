@@ -20,9 +20,7 @@ struct Row {
 };
 
 // Embeddings as the policy uses them.
-Embeddings read_embeddings(const Model& model, const std::string& tensor, const std::string& title, const std::vector<Row>& rows) {
-  const TensorInfo* place = model.policy->parameters().find(tensor);
-  if (!place) fail(Exit::kData, "the method ", quoted(model.method), " has no tensor '", tensor, "'");
+Embeddings read_embeddings(const Model& model, const TensorInfo* place, const std::string& title, const std::vector<Row>& rows) {
   Embeddings out{title, {}, {}, model.shape.embedding, {}};
   for (const Row& row : rows) {
     out.names.push_back(row.name);
@@ -64,27 +62,38 @@ int embedding(int argc, char** argv) {
   Input input(operands.empty() ? "-" : operands[0]);
   const Checkpoint checkpoint = read_checkpoint(input);
   const std::unique_ptr<World> restored = world_of(checkpoint);
-  const GridSet& world = as_gridworld(*restored, "a picture of embeddings");
+  const World& world = *restored;
   const Model model = load_model(checkpoint, world);
+  const auto* grid = dynamic_cast<const GridSet*>(restored.get());
 
   std::vector<Row> envs, tasks;
   const auto trained = [&](int EnvTask::*side, int index) {
     return all || std::any_of(model.seen.begin(), model.seen.end(), [&](const EnvTask& pair) { return pair.*side == index; });
   };
   for (int i = 0; i < world.envs(); ++i)
-    if (trained(&EnvTask::env, i)) envs.push_back({i, world.maze(i).name});
+    if (trained(&EnvTask::env, i)) envs.push_back({i, world.environments()[i].name});
   for (int i = 0; i < world.task_count(); ++i)
-    if (trained(&EnvTask::task, i)) tasks.push_back({i, world.tasks()[i].name()});
-  const auto treasures = [&](const Row& row) { return std::pair(world.tasks()[row.index].first, world.tasks()[row.index].second); };
-  std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
+    if (trained(&EnvTask::task, i)) tasks.push_back({i, world.task_names()[i]});
+  const auto treasures = [&](const Row& row) { return std::pair(grid->tasks()[row.index].first, grid->tasks()[row.index].second); };
+  if (grid) std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
 
-  std::vector<Embeddings> panels = {read_embeddings(model, "embedding.env", "environments", envs),
-                                    read_embeddings(model, "embedding.task", "tasks", tasks)};
-  for (const Row& row : tasks) panels[1].tasks.push_back(world.tasks()[row.index]);
+  std::vector<Embeddings> panels;
+  std::string of;
+  if (const TensorInfo* place = model.policy->parameters().find("embedding.env")) {
+    panels.push_back(read_embeddings(model, place, "environments", envs));
+    of = concat(count_text(envs.size(), world.envs()), " environments and ");
+  }
+  if (const TensorInfo* place = model.policy->parameters().find("embedding.task")) {
+    panels.push_back(read_embeddings(model, place, "tasks", tasks));
+    of += concat(count_text(tasks.size(), world.task_count()), " tasks");
+    if (grid)
+      for (const Row& row : tasks) panels.back().tasks.push_back(grid->tasks()[row.index]);
+  }
+  if (panels.empty()) fail(Exit::kData, "method ", quoted(model.method), " has no embeddings");
   const char* what = kind == "pca" ? "principal components" : metric == "cosine" ? "cosine distance" : "Euclidean distance";
-  style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", count_text(envs.size(), world.envs()),
-                         " environments and ", count_text(tasks.size(), world.task_count()), " tasks, size ", model.shape.embedding, "; ",
-                         model.method, ", ", model.updates, " updates; a task's mark: left its first treasure, right its second");
+  style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", of, ", size ",
+                         model.shape.embedding, "; ", model.method, ", ", model.updates, " updates",
+                         grid ? "; a task's mark: left its first treasure, right its second" : "");
   const Font font(picture.font);
   if (kind == "pca")
     finish(output, draw_embedding_map(panels, style, font));

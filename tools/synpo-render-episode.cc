@@ -1,16 +1,19 @@
-// synpo-render episode: a trajectory as a path through its maze, and what the agent saw on the way.
+// synpo-render episode: a trajectory as a path through its maze or kitchen, and what the agent saw on the way.
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
 
 #include "base/error.h"
 #include "base/folder.h"
 #include "draw/episode_picture.h"
+#include "draw/kitchen_episode_picture.h"
 #include "draw/terminal_path.h"
 #include "draw/video.h"
 #include "learn/stream.h"
 #include "synpo-render.h"
 #include "world/grid_set.h"
+#include "world/kitchen_set.h"
 
 using namespace synpo;
 
@@ -21,7 +24,7 @@ struct Read {
   int window;
 };
 
-Read read_episode(Input& input, const GridSet& world, int64_t line) {
+Read read_episode(Input& input, const World& world, int64_t line) {
   TrajectoryStream stream(input, world, {});
   const uint64_t before = stream.length_up_to(uint64_t(line - 1));
   const std::optional<Episode> episode = stream.next();
@@ -29,20 +32,47 @@ Read read_episode(Input& input, const GridSet& world, int64_t line) {
   return {*episode, stream.window()};
 }
 
-void write_frames(const std::string& path, const Film& film, const EpisodeStyle& style, const Font& font) {
+// What is made of an episode: the picture, a frame for the start and after every step, or text. `font` may be null where only text is wanted.
+struct Drawing {
+  std::shared_ptr<const World> world;  // what the others draw
+  int steps;
+  std::function<Canvas()> picture;
+  std::function<Canvas(int)> frame;
+  std::function<std::string(TerminalColour)> text;
+};
+
+Drawing maze_drawing(const std::string& world_name, Input& input, int64_t line, const EpisodeStyle& style, const Font* font) {
+  const auto world = std::make_shared<const GridSet>(GridSet::open(world_name));
+  const Read read = read_episode(input, *world, line);
+  const EnvTask pair = read.episode.pair;
+  const auto film = std::make_shared<const Film>(
+      play_film(world->maze(pair.env), world->tasks()[size_t(pair.task)], to_grid_state(read.episode.start), read.episode.actions, read.window));
+  return {world, film->steps(), [=] { return draw_episode(*film, style, *font); }, [=](int i) { return draw_episode_frame(*film, i, style, *font); },
+          [film](TerminalColour colour) { return terminal_path(*film, colour); }};
+}
+
+Drawing kitchen_drawing(Input& input, int64_t line, const EpisodeStyle& style, const Font* font) {
+  const auto world = std::make_shared<const KitchenSet>();
+  const Read read = read_episode(input, *world, line);
+  const auto film = std::make_shared<const KitchenFilm>(play_kitchen_film(*world, read.episode.pair, read.episode.start, read.episode.actions));
+  return {world, film->steps(), [=] { return draw_kitchen_episode(*film, style, *font); },
+          [=](int i) { return draw_kitchen_frame(*film, i, style, *font); }, nullptr};
+}
+
+void write_frames(const std::string& path, const Drawing& drawing) {
   OutputFolder folder(path);
-  for (int i = 0; i <= film.steps(); ++i) {
+  for (int i = 0; i <= drawing.steps; ++i) {
     char name[32];
     std::snprintf(name, sizeof name, "%04d.png", i);
-    folder.write(name, draw_episode_frame(film, i, style, font).png());
+    folder.write(name, drawing.frame(i).png());
   }
   folder.finish();
 }
 
-void write_video(const std::string& path, double rate, const Film& film, const EpisodeStyle& style, const Font& font) {
+void write_video(const std::string& path, double rate, const Drawing& drawing) {
   std::unique_ptr<Video> video;
-  for (int i = 0; i <= film.steps(); ++i) {
-    const Canvas frame = draw_episode_frame(film, i, style, font);
+  for (int i = 0; i <= drawing.steps; ++i) {
+    const Canvas frame = drawing.frame(i);
     if (!video) video = std::make_unique<Video>(path, rate, frame.width(), frame.height());
     video->add(frame);
   }
@@ -59,39 +89,37 @@ int episode(int argc, char** argv) {
   double rate = 8;
   bool ansi = false;
   Options options("synpo-render episode", "[OPTION]... [TRAJECTORIES]",
-                  "Draws an episode as a path through its maze, from light to dark, and what the agent saw on the way.");
-  options.text('w', "world", "WORLD", "gridworld, or gridworld:DIR for the map files of a folder", world_name)
+                  "Draws an episode as a path through its maze or kitchen, from light to dark, and what the agent saw on the way.");
+  options.text('w', "world", "WORLD", "gridworld, gridworld:DIR for the map files of a folder, or kitchen", world_name)
       .integer(0, "line", "N", "the episode's line", line, 1, INT64_MAX)
       .integer(0, "strip", "N", "pictures of what the agent saw: the first, picks, the last, others between; 0: none", style.strip, 0, kGridStepLimit)
-      .text(0, "title", "TEXT", "title instead of maze and task", style.title)
+      .text(0, "title", "TEXT", "title instead of environment and task", style.title)
       .section("instead of the picture")
-      .flag(0, "ansi", "the path as text, in coloured blocks on a terminal that has colours", ansi)
+      .flag(0, "ansi", "the path through a maze as text, in coloured blocks on a terminal that has colours", ansi)
       .text(0, "frames", "DIR", "a folder of numbered PNG files, one for the start and one after every step", frames)
       .text(0, "video", "FILE", "the same as a video: .avi, or .mp4, .mkv where OpenCV can", video)
       .real(0, "rate", "HZ", "the video's frames per second", rate, 0.1, 240);
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
-  const bool draws_films = !frames.empty() || !video.empty();
+  const bool kitchen = draws_kitchens(world_name), draws_films = !frames.empty() || !video.empty();
   if (ansi && draws_films) fail(Exit::kUsage, "--ansi goes without --frames and --video");
+  if (ansi && kitchen) fail(Exit::kUsage, "--ansi is for mazes, but the world is ", quoted(world_name));
   if (draws_films && options.given("output")) fail(Exit::kUsage, "--frames and --video take the place of the picture, but -o is given");
   if (options.given("rate") && video.empty()) fail(Exit::kUsage, "--rate is for --video");
   style.scale = picture.scale;
 
   std::unique_ptr<Output> output;
   if (!draws_films) output = std::make_unique<Output>(picture.output, ansi ? Output::Kind::kText : Output::Kind::kBinary, picture.force);
-  const GridSet world = GridSet::open(world_name);
   Input input(operands.empty() ? "-" : operands[0]);
-  const Read read = read_episode(input, world, line);
-  const EnvTask pair = read.episode.pair;
-  const Film film = play_film(world.maze(pair.env), world.tasks()[pair.task], to_grid_state(read.episode.start), read.episode.actions, read.window);
+  std::unique_ptr<const Font> font;
+  if (!ansi) font = std::make_unique<const Font>(picture.font);
+  const Drawing drawing = kitchen ? kitchen_drawing(input, line, style, font.get()) : maze_drawing(world_name, input, line, style, font.get());
   if (ansi) {
-    output->write(terminal_path(film, terminal_colour(output->is_stdout() ? 1 : -1)));
-    output->finish();
+    finish(*output, drawing.text(terminal_colour(output->is_stdout() ? 1 : -1)));
     return 0;
   }
-  const Font font(picture.font);
-  if (!frames.empty()) write_frames(frames, film, style, font);
-  if (!video.empty()) write_video(video, rate, film, style, font);
-  if (output) finish(*output, draw_episode(film, style, font));
+  if (!frames.empty()) write_frames(frames, drawing);
+  if (!video.empty()) write_video(video, rate, drawing);
+  if (output) finish(*output, drawing.picture());
   return 0;
 }

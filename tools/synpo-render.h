@@ -61,6 +61,9 @@ inline auto drawn(std::string& title) {
   return [&title](const std::string& given) { title = drawable(given); };
 }
 
+// Whether the world of -w is the kitchens; else it is mazes. Throws kUsage for one that cannot be drawn.
+bool draws_kitchens(const std::string& world);
+
 int heatmap(int argc, char** argv);
 int curves(int argc, char** argv);
 int embedding(int argc, char** argv);

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "draw/colour.h"
 #include "draw/heading.h"
+#include "draw/history_row.h"
 #include "draw/key.h"
 #include "draw/maze_picture.h"
 #include "world/planner.h"
@@ -17,7 +18,7 @@ constexpr double kCellPt = 13, kBetweenPt = 24, kMarginPt = 12, kTextPt = 9;
 constexpr Rgb kWindow = {0, 150, 160};
 
 void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment, int radius) {
-  const auto box = [&](int at) { return MazePlace{x, y, cell}.box(at); };
+  const auto box = [&](int at) { return PlanPlace{x, y, cell}.box(at); };
   const GridFrame& now = moment.state.now;
   draw_maze(canvas, x, y, cell, moment.maze);
   for (int i = 0; i < kTreasures; ++i)
@@ -57,7 +58,7 @@ void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const G
   uint8_t colours[kGridCells] = {};
   if (frame) draw_view(maze, *frame, radius, colours);
   for (int at = 0; at < kGridCells; ++at)
-    canvas.fill(MazePlace{x, y, cell}.box(at), kPalette[colours[at]]);
+    canvas.fill(PlanPlace{x, y, cell}.box(at), kPalette[colours[at]]);
 }
 
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps) {
@@ -80,10 +81,8 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
   const int text = px(kTextPt), heading = text + px(8);
   const int width = 2 * margin + 2 * side + between, right_x = margin + side + between;
 
-  // The row of four pictures takes the whole width.
-  const int small_gap = px(8), small_cell = (2 * side + between - (kHistory - 1) * small_gap) / kHistory / kGridSide;
-  const int small = small_cell * kGridSide;
-  const int history_height = style.history ? px(14) + heading + small + px(6) + text : 0;
+  const HistoryRow row(2 * side + between, kGridSide, Pixels{style.scale});
+  const int history_height = style.history ? px(14) + row.height() : 0;
 
   const Key key(key_entries(moment), width - 2 * margin, style.scale, font);
   const Heading title(style.title.empty() ? words(moment) : style.title, "", width - 2 * margin, style.scale, font);
@@ -98,17 +97,11 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
   draw_whole(canvas, margin, panels_y, cell, moment, style.radius);
   draw_seen(canvas, right_x, panels_y, cell, moment.maze, &moment.state.now, style.radius);
 
-  if (style.history) {
-    const int y = panels_y + side + px(14);
-    canvas.text(margin, y, "(c) the network's input: the last four pictures", text, kSoftInk);
-    for (int i = 0; i < kHistory; ++i) {
-      const bool missing = i < kHistory - moment.history.count;
-      const int x = margin + i * (small + small_gap), ago = kHistory - 1 - i;
-      draw_seen(canvas, x, y + heading, small_cell, moment.maze, missing ? nullptr : &moment.history.frames[i], style.radius);
-      const std::string when = ago == 0 ? "now" : concat(ago, ago == 1 ? " step ago" : " steps ago");
-      canvas.text(x + small / 2, y + heading + small + px(6), missing ? "before the start: zero" : when, text, kInk, Across::kCentre);
-    }
-  }
+  if (style.history)
+    row.draw(canvas, margin, panels_y + side + px(14), "(c) the network's input: the last four pictures", moment.history.count,
+             [&](const Box& box, int i, bool missing) {
+               draw_seen(canvas, box.x, box.y, box.width / kGridSide, moment.maze, missing ? nullptr : &moment.history.frames[i], style.radius);
+             });
 
   key.draw(canvas, margin, key_y);
   return canvas;

@@ -69,6 +69,11 @@ void Canvas::disc(Point centre, double radius, Rgb colour) {
              kShift);
 }
 
+void Canvas::picture(const Box& box, const uint8_t* rgb) {
+  for (int y = box.y; y < box.bottom(); ++y)
+    for (int x = box.x; x < box.right(); ++x, rgb += 3) pixels_->bgr.at<cv::Vec3b>(y, x) = {rgb[2], rgb[1], rgb[0]};
+}
+
 void Canvas::blend(int x, int y, uint8_t coverage, Rgb colour) {
   if (coverage == 0) return;
   if (x < 0 || y < 0 || x >= width() || y >= height()) {

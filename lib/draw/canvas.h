@@ -56,6 +56,9 @@ class Canvas {
   void polygon(const std::vector<Point>& corners, Rgb colour);
   void disc(Point centre, double radius, Rgb colour);
 
+  // rgb [height, width, 3] of the box, pixel for pixel; it lies within the picture.
+  void picture(const Box& box, const uint8_t* rgb);
+
   // Colours what the mask covers; `opacity` from 0 to 1. The box may reach beyond the picture.
   void paint(const Mask& mask, Rgb colour, double opacity = 1);
 

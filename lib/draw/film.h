@@ -25,8 +25,7 @@ Film play_film(const Maze& maze, const Task& task, const GridState& start, const
 // The treasure that action number `i`, from 0, picks; -1 where it picks none.
 int treasure_picked(const Film& film, int i);
 
-// Actions, rising, at most `count`: the first, the last and those that pick a treasure, and others as evenly between them as can be. Where
-// `count` is below the number of the former, the first, the last and then the earliest picks come before others.
+// Actions: spread_moments() with those that pick a treasure.
 std::vector<int> key_moments(const Film& film, int count);
 
 // "success", "wrong pick", "timeout" or, where the actions end before the episode does, "unfinished".

@@ -21,7 +21,7 @@ void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze) {
       canvas.fill({x, y + i * cell - line / 2, kGridSide * cell, line}, kPaperGrid);
     }
   for (int at = 0; at < kGridCells; ++at)
-    if (maze.wall[at]) canvas.fill(MazePlace{x, y, cell}.box(at), kPaperWall);
+    if (maze.wall[at]) canvas.fill(PlanPlace{x, y, cell}.box(at), kPaperWall);
 }
 
 void draw_treasure(Canvas& canvas, const Box& box, int treasure) {

@@ -6,6 +6,7 @@
 
 #include "draw/canvas.h"
 #include "draw/key.h"
+#include "draw/place.h"
 #include "world/maze.h"
 #include "world/task.h"
 
@@ -15,13 +16,6 @@ namespace synpo {
 constexpr Rgb kPaperWall = {62, 70, 82}, kPaperFloor = {250, 249, 245}, kPaperGrid = {226, 224, 217}, kPaperAgent = {20, 20, 24};
 extern const std::array<Rgb, kTreasures> kPaperTreasures;
 extern const char* const kTreasureNames[kTreasures];
-
-// Where a maze is drawn: its top left corner, and pixels a cell.
-struct MazePlace {
-  int x, y, cell;
-  Box box(int at) const { return {x + at % kGridSide * cell, y + at / kGridSide * cell, cell, cell}; }
-  Point centre(int at) const { return {x + (at % kGridSide + 0.5) * cell, y + (at / kGridSide + 0.5) * cell}; }
-};
 
 // The maze with its top left corner at (x, y), `cell` pixels a cell.
 void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze);

@@ -1,14 +1,16 @@
-// The way of an agent through a maze, light where it begins and dark where it ends.
+// The way of an agent over a plan, light where it begins and dark where it ends.
 #pragma once
-#include <cstdint>
 #include <vector>
 
-#include "draw/maze_picture.h"
+#include "draw/canvas.h"
+#include "draw/place.h"
 
 namespace synpo {
 
 // From 0, the start, to 1, the last step; darkness rises strictly, hue runs from yellow to purple.
 Rgb time_colour(double share);
+// Of a step, from 1, of so many.
+Rgb step_colour(int step, int steps);
 
 constexpr int kPathLanes = 5;
 
@@ -18,9 +20,16 @@ struct PathCorner {
   Point at;
   int step;  // the number of the step, from 1, that leads here; 0 at the start
 };
-std::vector<PathCorner> path_corners(const MazePlace& place, const std::vector<uint8_t>& cells);
+std::vector<PathCorner> path_corners(const PlanPlace& place, const std::vector<int>& cells);
 
-// `steps` is the step whose colour is darkest. With arrowheads on the way.
-void draw_path(Canvas& canvas, const MazePlace& place, const std::vector<uint8_t>& cells, int steps);
+// `direction` has unit length.
+void draw_arrowhead(Canvas& canvas, Point tip, Point direction, double size, Rgb colour);
+// `steps` is the step whose colour is darkest, `ground` the colour of a thin border. With arrowheads on the way.
+void draw_path(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells, int steps, Rgb ground);
+
+// How often each cell is among `cells`, in a corner of those where the path cannot tell: more than kPathLanes. Small cells have no room for that.
+void draw_counts(Canvas& canvas, const PlanPlace& place, const std::vector<int>& cells);
+bool has_counts(int cell, const std::vector<int>& cells);
+void draw_count_sign(Canvas& canvas, const Box& box);
 
 }  // namespace synpo

@@ -71,7 +71,7 @@ void draw_treasure_letter(Canvas& canvas, const Box& box, int treasure) {
               Across::kCentre, Upright::kMiddle);
 }
 
-void draw_stage(Canvas& canvas, const MazePlace& place, const Maze& maze, const PolicyStage& stage) {
+void draw_stage(Canvas& canvas, const PlanPlace& place, const Maze& maze, const PolicyStage& stage) {
   draw_maze(canvas, place.x, place.y, place.cell, maze);
   const int line = std::max(1, place.cell / 16);
   for (const PolicyCell& cell : stage.cells)
@@ -154,7 +154,7 @@ Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyS
   Canvas canvas(inside + 2 * margin, key_y + key.height() + margin, font);
   heading.draw(canvas, margin, margin);
   for (int i = 0; i < count; ++i) {
-    const MazePlace place = {margin + i * (side + between), y, cell};
+    const PlanPlace place = {margin + i * (side + between), y, cell};
     canvas.text(place.x, titles_y, font.fitted(stage_text(task, stages[i]), title, side), title, kInk);
     draw_stage(canvas, place, maze, stages[i]);
   }

@@ -1,9 +1,10 @@
-// Success matrices and mazes on a terminal, as coloured blocks.
+// Success matrices, mazes and kitchens on a terminal, as coloured blocks.
 #pragma once
 #include <string>
 
 #include "draw/heatmap_table.h"
 #include "draw/maze_picture.h"
+#include "world/kitchen.h"
 
 namespace synpo {
 
@@ -29,5 +30,7 @@ std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, Termin
 // Mazes with their names, two columns a cell; walls are '#' without colour. A row has as many mazes as `width` columns hold (0: 80), at
 // most `style.columns` where that is not 0.
 std::string terminal_maps(const std::vector<Maze>& mazes, const MapStyle& style, TerminalColour colour, int width);
+// The same of kitchens, in the characters of their plans; floor is blank.
+std::string terminal_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style, TerminalColour colour, int width);
 
 }  // namespace synpo

@@ -14,6 +14,10 @@ namespace synpo {
 
 enum class Op { kAsIs, kTransposed };
 
+// Rows of the right matrix of a product that are packed together: what is packed of rows from a multiple of it on stands behind packed_size() of
+// the rows before, the same as if it were packed alone.
+constexpr int kPackedRows = 256;
+
 // A tensor of a 3-tap convolution's transformed form (bilinear.h): [products, rows, channels], `stride` rows from product to product.
 // A row is one tile of one sample's picture [side, side, channels].
 struct TileShape {

@@ -14,7 +14,7 @@ inline int smaller(int a, int b) { return a < b ? a : b; }
 template <class T>
 struct Product {
   using V = typename Lanes<T>::Vec;
-  static constexpr int kLanes = Lanes<T>::kCount, kTileColumns = 2 * kLanes, kTileRows = kVectorBytes == 64 ? 12 : 6, kDepth = 256;
+  static constexpr int kLanes = Lanes<T>::kCount, kTileColumns = 2 * kLanes, kTileRows = kVectorBytes == 64 ? 12 : 6, kDepth = kPackedRows;
 
   static int panels(int n) { return (n + kTileColumns - 1) / kTileColumns; }
   static size_t packed_size(int k, int n) { return size_t(k) * panels(n) * kTileColumns; }

@@ -23,7 +23,7 @@ struct AmxProduct {
   static constexpr int kSide = 32;                    // of the squares of C, and of the blocks of the inner index
   static constexpr int kTile = 16 * 32;               // bf16 values of a tile
   static constexpr int kBlock = 4 * kTile;            // and of a block
-  static constexpr int kDepth = 256;
+  static constexpr int kDepth = kPackedRows;
   using Half = unsigned short;
 
   static int round_up(int n) { return (n + kSide - 1) / kSide * kSide; }

@@ -1,6 +1,7 @@
 #include "learn/ppo.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <numeric>
 
@@ -32,6 +33,7 @@ std::map<std::string, std::string> PpoOptions::describe() const {
           {"ppo.minibatches", concat(minibatches)},
           {"ppo.value-warm-up", concat(value_warm_up)},
           {"ppo.value-hidden", concat(value_hidden)},
+          {"ppo.value-loss", concat(value_loss)},
           {"ppo.clip", concat(clipping.clip)},
           {"ppo.entropy", concat(clipping.entropy)},
           {"ppo.gradient-norm", concat(gradient_norm)},
@@ -44,6 +46,20 @@ std::map<std::string, std::string> PpoOptions::describe() const {
           {"ppo.reward-loss", concat(losses.reward)},
           {"ppo.env-loss", concat(losses.env)},
           {"ppo.task-loss", concat(losses.task)}};
+}
+
+LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise) {
+  LossWeights weights = otherwise;
+  for (const auto& [name, weight] : {std::pair<std::string, double*>{"reward-loss", &weights.reward}, {"env-loss", &weights.env}, {"task-loss", &weights.task}})
+    for (const std::string& key : {name, "ppo." + name}) {
+      const auto found = from.options.find(key);
+      if (found == from.options.end()) continue;
+      const std::string& text = found->second;
+      const auto end = std::from_chars(text.data(), text.data() + text.size(), *weight);
+      if (end.ec != std::errc() || end.ptr != text.data() + text.size() || !(*weight >= 0 && *weight <= 1e6))
+        fail(Exit::kData, "option '", key, "': found ", quoted(text), ", expected a number from 0 to 1e6");
+    }
+  return weights;
 }
 
 // The gradient of everything but the auxiliary losses, for the rows of a minibatch.
@@ -59,7 +75,7 @@ class Ppo::RolloutObjective : public Objective<float> {
     static_cast<ClippedLosses&>(result) =
         clipped_objective({n, action.data(), log_probability.data(), advantage.data()}, options, ppo_.world_.actions(), logits, dlogits);
     result.value = learn_value(parallel, n, psi, dpsi);
-    return result.policy + result.value - options.entropy * result.entropy;
+    return result.policy + ppo_.options_.value_loss * result.value - options.entropy * result.entropy;
   }
 
   Minibatch result;
@@ -82,8 +98,11 @@ class Ppo::RolloutObjective : public Objective<float> {
     const double loss = value_loss(n, value, chosen(ppo_.rollout_.target).data(), dvalue.data());
     std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
     ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(), ppo_.value_gradient_.data());
+    // RMSProp would undo a weight in the value's own gradients: it is what psi hears of the value.
+    const float weight = float(ppo_.options_.value_loss);
     for (int i = 0; i < n; ++i)
-      for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += dx[size_t(i) * in + c];
+      for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += weight * dx[size_t(i) * in + c];
+    for (float& gradient : ppo_.value_gradient_) gradient *= weight;
     return loss;
   }
 

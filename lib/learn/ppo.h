@@ -24,6 +24,7 @@ struct PpoOptions {
   int epochs = 4, minibatches = 4;    // over a rollout
   int value_warm_up = 20;             // first rollouts, in which the value alone learns
   int value_hidden = 512;
+  double value_loss = 1;              // weight of the value's loss
   ClippingOptions clipping;
   double gradient_norm = 0.5;
   GaeOptions gae;
@@ -31,6 +32,9 @@ struct PpoOptions {
   LossWeights losses;                 // the auxiliary ones
   std::map<std::string, std::string> describe() const;
 };
+
+// The auxiliary losses weigh what they did in the run that made the checkpoint; `otherwise` where it does not say. Throws kData for values that are none.
+LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise);
 
 // Means since the report before.
 struct PpoReport {

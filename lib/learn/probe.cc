@@ -8,11 +8,12 @@
 namespace synpo {
 namespace {
 
-ActionRates softmax(const float* scores) {
+// What the policy would do, as it acts by itself: by chance, or, where scores are values, the best action.
+ActionRates rates_of(const float* scores, bool values) {
   const double top = *std::max_element(scores, scores + kGridActions);
   ActionRates rates;
   double sum = 0;
-  for (int a = 0; a < kGridActions; ++a) sum += rates[a] = std::exp(scores[a] - top);
+  for (int a = 0; a < kGridActions; ++a) sum += rates[a] = values ? double(scores[a] == top) : std::exp(scores[a] - top);
   for (double& rate : rates) rate /= sum;
   return rates;
 }
@@ -37,7 +38,7 @@ std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world
       draw_history(maze, history, window, pictures.data() + i * kPicture);
     }
     policy.infer(0, int(size), pictures.data(), pair_of.data(), scores.data());
-    for (size_t i = 0; i < size; ++i) rates.push_back(softmax(scores.data() + i * kGridActions));
+    for (size_t i = 0; i < size; ++i) rates.push_back(rates_of(scores.data() + i * kGridActions, policy.temperature() == 0));
   }
   return rates;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 
 #include "base/error.h"
@@ -21,6 +22,7 @@ struct Hyper {
   const char* heading = nullptr;
   std::vector<std::string> choices = {};  // names of 0, 1, ...
   bool late = false;  // checkpoints made before this option have its default
+  std::set<std::string> methods = {};  // that have such a thing; none: all
 };
 
 constexpr double kMany = 1e9;
@@ -58,14 +60,15 @@ const Hyper kHypers[] = {
     {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
     {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
     {"hidden", &O::hidden, 1, 16384, true, "hidden units of alpha, beta, f_env and f_task"},
-    {"action-embedding", &O::action_embedding, 0, 4096, true, "synpo, mtl: size of learned phi(a); 0: phi(a) is one-hot", nullptr, {}, true},
+    {"action-embedding", &O::action_embedding, 0, 4096, true, "synpo, mtl: size of learned phi(a); 0: phi(a) is one-hot", nullptr, {}, true,
+     {"synpo", "mtl"}},
     {"head-hidden", &O::head_hidden, 1, 16384, true, "mlp, modulenet, sf: hidden units of their own parts; modulenet: 128, sf: 512",
-     "Single methods", {}, true},
-    {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true},
-    {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true},
+     "Single methods", {}, true, {"mlp", "modulenet", "sf"}},
+    {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true, {"modulenet"}},
+    {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true, {"modulenet"}},
     {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr,
-     {"td", "q", "ce"}, true},
-    {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true},
+     {"td", "q", "ce"}, true, {"sf"}},
+    {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true, {"sf"}},
 };
 
 // What differs from method to method, in every recipe.
@@ -199,7 +202,10 @@ void RecipeOptions::add_to(Options& options) {
 ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) const {
   ImitationOptions options = recipe(recipe_, method, sight);
   for (const Hyper& hyper : kHypers)
-    if (const auto change = changes_.find(hyper.name); change != changes_.end()) options.*hyper.value = change->second;
+    if (const auto change = changes_.find(hyper.name); change != changes_.end()) {
+      if (!hyper.methods.empty() && !hyper.methods.count(method)) fail(Exit::kUsage, "-m ", method, " has no --", hyper.name);
+      options.*hyper.value = change->second;
+    }
   if (no_reward_loss_) options.reward_loss = 0;
   if (no_env_loss_) options.env_loss = 0;
   if (no_task_loss_) options.task_loss = 0;

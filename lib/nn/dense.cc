@@ -5,23 +5,25 @@
 namespace synpo {
 namespace {
 
-constexpr int kRows = 64;  // of a shard
+// Of the rows of a product, how many are a shard. The other factor is read anew for each: where it fills a processor's own cache, shards are larger.
+int shard_rows(int rows, size_t other_factor) { return rows < 512 || other_factor < 1 << 19 ? 64 : 128; }
 
-// Memory to pack a layer's weight into, for all threads; nothing of it outlives the layer's call.
+// Memory to pack a matrix into, for all threads; nothing of it outlives the next call.
 template <class T>
-const Packed<T>& packed(Op op, int k, int n, const T* w, int ldw) {
-  thread_local Packed<T> weight;
-  weight.pack(op, k, n, w, ldw);
-  return weight;
+const Packed<T>& packed(Parallel& parallel, Op op, int k, int n, const T* b, int ldb) {
+  thread_local Packed<T> matrix;
+  matrix.pack(parallel, op, k, n, b, ldb);
+  return matrix;
 }
 
 }  // namespace
 
 template <class T>
 void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* b, bool relu, T* y) {
-  const Packed<T>& weight = packed(Op::kAsIs, in, out, w, out);
-  parallel.run(shard_count(rows, kRows), [&](int shard, int) {
-    const Range range = shard_range(rows, kRows, shard);
+  const Packed<T>& weight = packed(parallel, Op::kAsIs, in, out, w, out);
+  const int unit = shard_rows(rows, size_t(in) * out);
+  parallel.run(shard_count(rows, unit), [&](int shard, int) {
+    const Range range = shard_range(rows, unit, shard);
     T* to = y + size_t(range.begin) * out;
     gemm(Op::kAsIs, range.size(), x + size_t(range.begin) * in, in, weight, to, out);
     if (b || relu) kernels<T>().add_bias(range.size(), out, b, relu, to);
@@ -31,14 +33,17 @@ void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, co
 template <class T>
 void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* relu_y, T* dy, T* dx, bool add_dx,
                     T* dw, T* db) {
-  const Packed<T>* weight = dx ? &packed(Op::kTransposed, out, in, w, out) : nullptr;
-  parallel.run(shard_count(rows, kRows), [&](int shard, int) {
-    const Range range = shard_range(rows, kRows, shard);
-    T* d = dy + size_t(range.begin) * out;
-    if (relu_y) kernels<T>().relu_mask(size_t(range.size()) * out, d, relu_y + size_t(range.begin) * out);
-    if (dx) gemm(Op::kAsIs, range.size(), d, out, *weight, dx + size_t(range.begin) * in, in, add_dx);
-  });
-  constexpr int block = 64;
+  const Packed<T>* weight = dx ? &packed(parallel, Op::kTransposed, out, in, w, out) : nullptr;
+  const int unit = shard_rows(rows, size_t(in) * out);
+  if (dx || relu_y)
+    parallel.run(shard_count(rows, unit), [&](int shard, int) {
+      const Range range = shard_range(rows, unit, shard);
+      T* d = dy + size_t(range.begin) * out;
+      if (relu_y) kernels<T>().relu_mask(size_t(range.size()) * out, d, relu_y + size_t(range.begin) * out);
+      if (dx) gemm(Op::kAsIs, range.size(), d, out, *weight, dx + size_t(range.begin) * in, in, add_dx);
+    });
+  const Packed<T>& right = packed(parallel, Op::kAsIs, rows, out, dy, out);
+  const int block = shard_rows(in, size_t(rows) * out);
   parallel.run(shard_count(in, block) + 1, [&](int shard, int) {
     if (shard == 0) {
       if (db)
@@ -47,7 +52,7 @@ void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, c
       return;
     }
     const Range range = shard_range(in, block, shard - 1);
-    gemm(Op::kTransposed, Op::kAsIs, range.size(), out, rows, x + range.begin, in, dy, out, dw + size_t(range.begin) * out, out, true);
+    gemm(Op::kTransposed, range.size(), x + range.begin, in, right, dw + size_t(range.begin) * out, out, true);
   });
 }
 

@@ -10,6 +10,20 @@ void Packed<T>::pack(Op op, int k, int n, const T* b, int ldb) {
 }
 
 template <class T>
+void Packed<T>::pack(Parallel& parallel, Op op, int k, int n, const T* b, int ldb) {
+  constexpr size_t kWorthwhile = 1 << 18;
+  if (size_t(k) * n < kWorthwhile) return pack(op, k, n, b, ldb);
+  k_ = k;
+  n_ = n;
+  T* to = values_.grow(kernels<T>().packed_size(k, n));
+  parallel.run(shard_count(k, kPackedRows), [&](int shard, int) {
+    const Range range = shard_range(k, kPackedRows, shard);
+    const T* from = b + (op == Op::kAsIs ? size_t(range.begin) * ldb : size_t(range.begin));
+    kernels<T>().pack(op, range.size(), n, from, ldb, to + kernels<T>().packed_size(range.begin, n));
+  });
+}
+
+template <class T>
 void gemm(Op op_a, int m, const T* a, int lda, const Packed<T>& b, T* c, int ldc, bool accumulate) {
   kernels<T>().multiply(op_a, m, b.n(), b.k(), a, lda, b.data(), c, ldc, accumulate);
 }

@@ -1,5 +1,6 @@
 // Matrix products. Matrices are row-major.
 #pragma once
+#include "base/parallel.h"
 #include "kernel/kernels.h"
 #include "nn/buffer.h"
 
@@ -12,6 +13,8 @@ class Packed {
  public:
   // Takes op(b) [k, n]; ldb is the distance between rows as they lie in memory.
   void pack(Op op, int k, int n, const T* b, int ldb);
+  // The same on all threads, which large matrices are worth.
+  void pack(Parallel& parallel, Op op, int k, int n, const T* b, int ldb);
   int k() const { return k_; }
   int n() const { return n_; }
   const T* data() const { return values_.data(); }

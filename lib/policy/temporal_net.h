@@ -37,19 +37,21 @@ class TemporalNet : public Encoder<T> {
 
  private:
   static constexpr int kTaps = 3;
-  // A convolution's weight [taps, in, channels], packed tap by tap.
+  // A convolution's weight is [taps, in, channels].
   struct Convolution {
     int in;
     size_t weight, bias;
-    Packed<T> taps[kTaps];
   };
   size_t tap_offset(const Convolution& c, int tap) const { return c.weight + size_t(tap) * c.in * sizes_.channels; }
-  void pack(Parallel& parallel, const T* parameters);
-  // For some states: views [n, history, view] and hands out of the observations, then both convolutions into y1 [n, 2, channels] and the first
-  // columns of joined [n, joined_width()], whose last ones are the objects' embeddings.
-  void unpack(int n, const uint8_t* observations, T* views, int* hands) const;
-  void convolve(int n, const T* views, const int* hands, const T* biases, const T* objects, T* y1, T* joined) const;
+  size_t row() const { return size_t(kHistory) * sizes_.view + kHandFloats; }  // values of an observation
   int joined_width() const { return sizes_.channels + sizes_.object_embedding; }
+  // The values [n, row()] of observations: where they stand, or copied to `own`.
+  const T* values(int n, const uint8_t* observations, Buffer<T>& own) const;
+  void pack_first(Parallel& parallel, const T* parameters, Packed<T>* taps) const;
+  // The first convolution of some states, to y1 [n, 2, channels].
+  void convolve(int n, const T* x, const Packed<T>* taps, const T* bias, T* y1) const;
+  // What follows the second one's outputs, where those of x hold on to, in joined [n, joined_width()].
+  void put_objects(int n, const T* x, const T* objects, T* joined) const;
 
   TemporalSizes sizes_;
   int feature_;
@@ -58,14 +60,15 @@ class TemporalNet : public Encoder<T> {
   Perceptron<T> fc_;
   size_t end_;  // of the encoder's tensors
   int n_ = 0;
-  Buffer<T> views_, y1_, joined_, dy1_, djoined_, dy2_;
-  std::vector<int> hands_;
+  const T* x_ = nullptr;
+  Buffer<T> own_, y1_, y2_, joined_, dy1_, dy2_, djoined_;
+  Packed<T> taps_[kTaps], dy1_packed_[2];
   // For inference.
   struct Scratch {
-    Buffer<T> views, y1, joined, hidden;
-    std::vector<int> hands;
+    Buffer<T> own, y1, joined, hidden;
   };
   std::vector<Scratch> scratch_;  // a thread's own
+  Packed<T> infer_taps_[kTaps], infer_second_;
   std::vector<T> bias_values_, object_values_;
 };
 

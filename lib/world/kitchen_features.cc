@@ -1,45 +1,41 @@
 #include "world/kitchen_features.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 #include "base/hash.h"
-#include "base/random.h"
 
 namespace synpo {
 namespace {
 
-constexpr int kResponses = 32;
-constexpr int kCellPixels = 4;
-constexpr int kCells = kSmallView / kCellPixels;
-static_assert(kCells * kCells * kResponses == kViewFeatures);
-constexpr uint64_t kSeed = 2018;
-// Sixteen bits hold every response and every sum: 3 * 255 * kLargestWeight and, of sixteen responses each divided by sixteen, the same.
-constexpr int kLargestWeight = 42;
-constexpr int kShift = 4;
-constexpr float kScale = 3.0f / (255 * kLargestWeight);  // brings the largest features to a few units
+constexpr int kCellRows = 4, kCellColumns = 8;  // pixels of a cell
+constexpr int kLevels = 4;                      // of a colour's channel, at 0, 85, 170 and 255
+constexpr int kLevelGap = 255 / (kLevels - 1);
+constexpr int kBins = kLevels * kLevels * kLevels;
+static_assert(kSmallView / kCellRows * (kSmallView / kCellColumns) * kBins == kViewFeatures);
+constexpr int kPixelWeight = kLevelGap * kLevelGap * kLevelGap;  // that a pixel shares out among bins
+constexpr float kLargest = 8;                                    // of a feature: so their root mean square is one
 
-struct Responses {
-  std::array<int16_t, kResponses> r, g, b, bias;
+// The level at or below a value, and the weights of it and of the next one.
+struct Levels {
+  int lower, weight[2];
+  explicit Levels(int value) : lower(std::min(value / kLevelGap, kLevels - 2)), weight{} {
+    weight[1] = value - lower * kLevelGap;
+    weight[0] = kLevelGap - weight[1];
+  }
 };
 
-// Planes through random points of the colour cube, in random directions.
-const Responses& responses() {
-  static const Responses fixed = [] {
-    Responses all;
-    Random random(kSeed, Purpose::kInit, 2);
-    for (size_t c = 0; c < kResponses; ++c) {
-      int at_point = 0;
-      for (auto* weights : {&all.r, &all.g, &all.b}) {
-        const int weight = int(random.below(2 * kLargestWeight + 1)) - kLargestWeight;
-        (*weights)[c] = int16_t(weight);
-        at_point += weight * int(random.below(256));
-      }
-      all.bias[c] = int16_t(-at_point);
+void count(const uint8_t* pixel, int32_t* bins) {
+  const Levels r(pixel[0]), g(pixel[1]), b(pixel[2]);
+  int32_t* at = bins + (r.lower * kLevels + g.lower) * kLevels + b.lower;
+  for (int i = 0; i < 2; ++i)
+    for (int j = 0; j < 2; ++j) {
+      int32_t* pair = at + (i * kLevels + j) * kLevels;
+      const int weight = r.weight[i] * g.weight[j];
+      pair[0] += weight * b.weight[0];
+      pair[1] += weight * b.weight[1];
     }
-    return all;
-  }();
-  return fixed;
 }
 
 constexpr size_t kKeptViews = 256;
@@ -58,23 +54,19 @@ uint64_t hash_of(uint64_t kitchen, const KitchenFrame& frame) {
 
 }  // namespace
 
-uint64_t extractor_hash() { return Hash().add(kExtractorName).add(&responses(), sizeof(Responses)).value(); }
+uint64_t extractor_hash() {
+  const int32_t numbers[] = {kSmallView, kCellRows, kCellColumns, kLevels, int32_t(kLargest)};
+  return Hash().add(kExtractorName).add(numbers, sizeof numbers).value();
+}
 
 void extract_features(const uint8_t* rgb, float* features) {
-  const Responses fixed = responses();
-  for (int row = 0; row < kSmallView; row += kCellPixels)
-    for (int column = 0; column < kSmallView; column += kCellPixels, features += kResponses) {
-      std::array<int16_t, kResponses> sums = {};
-      for (int y = row; y < row + kCellPixels; ++y)
-        for (int x = column; x < column + kCellPixels; ++x) {
-          const uint8_t* pixel = rgb + 3 * (y * kSmallView + x);
-          const int16_t r = pixel[0], g = pixel[1], b = pixel[2];
-          for (size_t c = 0; c < kResponses; ++c) {
-            const int16_t response = int16_t(r * fixed.r[c] + g * fixed.g[c] + b * fixed.b[c] + fixed.bias[c]);
-            sums[c] = int16_t(sums[c] + (std::max<int16_t>(response, 0) >> kShift));
-          }
-        }
-      for (size_t c = 0; c < kResponses; ++c) features[c] = float(sums[c]) * kScale;
+  constexpr float kUnit = kLargest * kLargest / (float(kPixelWeight) * kCellRows * kCellColumns);
+  for (int row = 0; row < kSmallView; row += kCellRows)
+    for (int column = 0; column < kSmallView; column += kCellColumns, features += kBins) {
+      int32_t bins[kBins] = {};
+      for (int y = row; y < row + kCellRows; ++y)
+        for (int x = column; x < column + kCellColumns; ++x) count(rgb + 3 * (y * kSmallView + x), bins);
+      for (int bin = 0; bin < kBins; ++bin) features[bin] = std::sqrt(float(bins[bin]) * kUnit);
     }
 }
 

@@ -1,5 +1,6 @@
-// The built-in extractor of features: a view of 32 x 32 pixels, cut into 8 x 8 cells of 4 x 4, and for every cell the mean over its pixels of 32 responses
-// relu(w_c . rgb + b_c), rgb in [0, 1], with fixed w and b, computed in integers of 16 bits. Features stand by cell, row by row, and within it by response.
+// The built-in extractor of features: soft histograms of colours. A view of 32 x 32 pixels is cut into 8 rows of 4 cells, 4 pixels high and 8 wide. In
+// every cell the pixels are counted in 4 x 4 x 4 bins of r, g and b, each shared out among the eight nearest bins in proportion to how near it is. A
+// feature is 8 sqrt(share of the cell): a small object in a large cell still shows. Features stand by cell, row by row, then by r, g, b.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +10,7 @@
 
 namespace synpo {
 
-constexpr const char* kExtractorName = "colour-cells-1";
+constexpr const char* kExtractorName = "colour-histograms-1";
 constexpr size_t kKitchenObservation = kHistory * kViewFeatures + kHandFloats;  // floats
 
 // Of the extractor's name and numbers: features of two extractors with one hash mean the same.

@@ -10,7 +10,6 @@ namespace {
 
 constexpr int kHeadings = 4, kHorizons = 3, kLevel = 1;
 constexpr int kHorizonDegrees = 30;
-constexpr int kSightCells = 6;  // 1.5 m
 
 int pose_of(int cell, int heading, int horizon) { return (cell * kHeadings + heading) * kHorizons + horizon; }
 

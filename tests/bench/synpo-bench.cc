@@ -2,6 +2,8 @@
 //   synpo-bench rows                     TSV rows name, value, unit of everything but the step
 //   synpo-bench methods                  the rows of these that compare methods, and those of the head
 //   synpo-bench train|forward B THREADS  states per second of the Table 2 network at batch B
+//   synpo-bench kitchen B THREADS        the training step of the kitchens' network, that of Table 3, on random features
+//   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
 //
 // train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
 // head_FORM_ACTIONS_train and _infer are the bilinear head alone, d = K = 128, 512 states of 144 pairs. `direct` composes A d K a pair and
@@ -12,6 +14,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -20,6 +23,7 @@
 #include "learn/episode.h"
 #include "learn/model.h"
 #include "learn/open.h"
+#include "learn/ppo.h"
 #include "learn/recipe.h"
 #include "learn/running_episode.h"
 #include "learn/steps.h"
@@ -37,32 +41,49 @@ namespace {
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
+// Random steps of a world; an observation is a picture of the start of an episode, or features drawn at random.
 struct RandomBatch {
-  std::vector<uint8_t> pictures;
+  std::vector<uint8_t> observations;
   std::vector<int> env, task, label, taken, next;
   std::vector<float> reward, planner_q;
   StepBatch<float> batch;
 
-  explicit RandomBatch(int n)
-      : pictures(size_t(n) * kGridCells * kHistory), env(n), task(n), label(n), taken(n), next(n, StepBatch<float>::kTerminal), reward(n),
-        planner_q(size_t(n) * kGridActions, 1.0f) {
-    const std::vector<Maze>& mazes = builtin_mazes();
+  RandomBatch(int n, const PolicyShape& shape, size_t observation_size)
+      : observations(n * observation_size), env(n), task(n), label(n), taken(n), next(n, StepBatch<float>::kTerminal), reward(n),
+        planner_q(size_t(n) * shape.actions, 1.0f) {
     for (int i = 0; i < n; ++i) {
       Random random(1, Purpose::kEpisodeStart, 0, i);
-      env[i] = int(random.below(20));
-      task[i] = int(random.below(20));
-      if (random.below(400) < 256) task[i] = (env[i] + int(random.below(7))) % 20;  // about 144 distinct pairs
-      label[i] = int(random.below(kGridActions));
+      env[i] = int(random.below(uint32_t(shape.envs)));
+      task[i] = int(random.below(uint32_t(shape.tasks)));
+      if (random.below(400) < 256) task[i] = (env[i] + int(random.below(7))) % shape.tasks;  // about 144 distinct pairs
+      label[i] = int(random.below(uint32_t(shape.actions)));
       taken[i] = label[i];
       reward[i] = -0.01f;
       if (i < n / 2) next[i] = n / 2 + i;
-      uint8_t colours[kGridCells];
-      const GridState state = grid_reset(mazes[env[i]], random);
-      draw_view(mazes[env[i]], state.now, 1, colours);
-      for (int cell = 0; cell < kGridCells; ++cell)
-        for (int f = 0; f < kHistory; ++f) pictures[(size_t(i) * kGridCells + cell) * kHistory + f] = colours[cell];
+      uint8_t* observation = observations.data() + i * observation_size;
+      if (shape.sight == Sight::kPictures)
+        draw_start(env[i], random, observation);
+      else
+        draw_features(shape.views, random, observation);
     }
-    batch = {n, pictures.data(), env.data(), task.data(), label.data(), taken.data(), reward.data(), 1, 0, next.data(), planner_q.data()};
+    batch = {n, observations.data(), env.data(), task.data(), label.data(), taken.data(), reward.data(), 1, 0, next.data(), planner_q.data()};
+  }
+
+ private:
+  static void draw_start(int env, Random& random, uint8_t* picture) {
+    const Maze& maze = builtin_mazes()[size_t(env)];
+    uint8_t colours[kGridCells];
+    const GridState state = grid_reset(maze, random);
+    draw_view(maze, state.now, 1, colours);
+    for (int cell = 0; cell < kGridCells; ++cell)
+      for (int f = 0; f < kHistory; ++f) picture[cell * kHistory + f] = colours[cell];
+  }
+  static void draw_features(const TemporalSizes& sizes, Random& random, uint8_t* observation) {
+    std::vector<float> floats(size_t(kHistory) * sizes.view + kHandFloats, 0.0f);
+    const size_t hand = floats.size() - kHandFloats;
+    for (size_t j = 0; j < hand; ++j) floats[j] = float(random.uniform());
+    floats[hand] = float(random.below(uint32_t(sizes.objects)));
+    std::memcpy(observation, floats.data(), floats.size() * sizeof(float));
   }
 };
 
@@ -83,17 +104,19 @@ double rate(int states, double limit_s, Work&& work) {
   return rates[rates.size() / 2];
 }
 
-double network_rate(bool train, int n, int threads, double limit_s = 4, const std::string& method = "synpo") {
+double network_rate(bool train, int n, int threads, double limit_s = 4, const std::string& method = "synpo", const char* world = "gridworld") {
   Parallel parallel(threads);
-  const ImitationOptions options = recipe(kDefaultRecipe, method);
-  const std::unique_ptr<Policy<float>> made = make_policy(method, options.shape(GridSet::open("gridworld")));
+  const std::unique_ptr<World> opened = open_world(world);
+  const ImitationOptions options = recipe(kDefaultRecipe, method, opened->sight());
+  const PolicyShape shape = options.shape(*opened);
+  const std::unique_ptr<Policy<float>> made = make_policy(method, shape);
   Policy<float>& policy = *made;
   const size_t count = policy.parameters().total();
-  Buffer<float> parameters(count), statistics(policy.statistics().total()), gradient(count), m(count), v(count), logits(size_t(n) * kGridActions);
+  Buffer<float> parameters(count), statistics(policy.statistics().total()), gradient(count), m(count), v(count), logits(size_t(n) * shape.actions);
   policy.initialise({}, parameters.data(), statistics.data());
   m.zero();
   v.zero();
-  const RandomBatch data(n);
+  const RandomBatch data(n, shape, policy.observation_size());
   int64_t step = 0;
   if (train)
     return rate(n, limit_s, [&] {
@@ -101,18 +124,36 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
       adam_step(parallel, {}, ++step, count, gradient.data(), parameters.data(), m.data(), v.data());
     });
   std::vector<std::pair<int, int>> pairs;
-  for (int i = 0; i < 400; ++i) pairs.emplace_back(i / 20, i % 20);
+  for (int i = 0; i < shape.envs * shape.tasks; ++i) pairs.emplace_back(i / shape.tasks, i % shape.tasks);
   std::vector<int> pair(n);
-  for (int i = 0; i < n; ++i) pair[i] = data.env[i] * 20 + data.task[i];
+  for (int i = 0; i < n; ++i) pair[i] = data.env[i] * shape.tasks + data.task[i];
   policy.prepare_inference(parallel, parameters.data(), statistics.data(), pairs);
   constexpr int kUnit = Policy<float>::kInferenceUnit;
   return rate(n, limit_s, [&] {
     parallel.run(shard_count(n, kUnit), [&](int shard, int thread) {
       const Range range = shard_range(n, kUnit, shard);
-      policy.infer(thread, range.size(), data.pictures.data() + size_t(range.begin) * kGridCells * kHistory, pair.data() + range.begin,
-                   logits.data() + size_t(range.begin) * kGridActions);
+      policy.infer(thread, range.size(), data.observations.data() + range.begin * policy.observation_size(), pair.data() + range.begin,
+                   logits.data() + size_t(range.begin) * shape.actions);
     });
   });
+}
+
+double ppo_rate(int threads) {
+  const GridSet world = GridSet::open("gridworld");
+  Parallel parallel(threads);
+  Model model;
+  model.method = "synpo";
+  model.shape = recipe(kDefaultRecipe).shape(world);
+  for (int i = 0; i < 144; ++i) model.seen.push_back({i % 20, (i + 3 * (i / 20)) % 20});
+  model.policy = make_policy(model.method, model.shape);
+  model.parameters.grow(model.policy->parameters().total());
+  model.statistics.grow(model.policy->statistics().total());
+  model.policy->initialise({}, model.parameters.data(), model.statistics.data());
+  PpoOptions options;
+  options.value_warm_up = 0;
+  Ppo ppo(world, parallel, std::move(model), options, 1);
+  ppo.measure_statistics(4);
+  return rate(options.lanes * options.rollout, 8, [&] { ppo.update(); });
 }
 
 void row(const char* name, double value, const char* unit) { std::printf("%s\t%.6g\t%s\n", name, value, unit); }
@@ -306,11 +347,19 @@ int main(int argc, char** argv) {
     std::printf("%.0f\n", network_rate(what == "train", std::atoi(argv[2]), std::atoi(argv[3])));
     return 0;
   }
+  if (argc == 4 && what == "kitchen") {
+    std::printf("%.0f\n", network_rate(true, std::atoi(argv[2]), std::atoi(argv[3]), 4, "synpo", "kitchen"));
+    return 0;
+  }
+  if (argc == 3 && what == "ppo") {
+    std::printf("%.0f\n", ppo_rate(std::atoi(argv[2])));
+    return 0;
+  }
   if (argc == 2 && what == "rows") return rows();
   if (argc == 2 && what == "methods") {
     method_rows(Parallel().threads());
     return 0;
   }
-  std::fputs("usage: synpo-bench rows | methods | train BATCH THREADS | forward BATCH THREADS\n", stderr);
+  std::fputs("usage: synpo-bench rows | methods | train|forward|kitchen BATCH THREADS | ppo THREADS\n", stderr);
   return 64;
 }

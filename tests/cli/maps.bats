@@ -66,9 +66,9 @@ map() {
     map maps/map1.txt
     synpo-gen-expert -w gridworld:maps -n 1 >e.jsonl
     fails 65 synpo-gen-expert --relabel <e.jsonl
-    says "line 1: env 'map1' is not the maze of that name here"
+    says "line 1: env 'map1' is not the one of that name here"
     fails 65 synpo-train -q -n 1 <e.jsonl
-    says "line 1: env 'map1' is not the maze of that name here"
+    says "line 1: env 'map1' is not the one of that name here"
 }
 
 @test "15 lines, 17 lines, a line of 17: 65, with what was found" {

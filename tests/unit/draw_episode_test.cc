@@ -72,7 +72,7 @@ TEST(Path, TimeDarkens) {
 }
 
 TEST(Path, TheSameWayAgainRunsBesideTheFirst) {
-  const MazePlace place = {0, 0, 100};
+  const PlanPlace place = {0, 0, 100};
   const uint8_t a = cell(1, 1), b = cell(1, 2);
   const std::vector<PathCorner> corners = path_corners(place, {a, b, a, b});
   std::set<double> rows;

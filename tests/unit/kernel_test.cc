@@ -5,12 +5,14 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <tuple>
 
 #include "base/error.h"
 #include "nn/gemm.h"
 #include "numbers.h"
+#include "targets.h"
 
 namespace synpo {
 namespace {
@@ -129,6 +131,23 @@ TEST(Gemm, APackedMatrixIsGoodForManyProducts) {
         EXPECT_EQ(got, want);
       }
     }
+}
+
+TEST(Gemm, ThreadsPackToTheSameBytes) {
+  Parallel parallel(2);
+  for_every_target([&](const std::string&) {
+    for (const auto& [n, k] : {std::pair(1030, 255), std::pair(1030, 256), std::pair(1030, 257), std::pair(401, 1100)})
+      for (const Op op : {Op::kAsIs, Op::kTransposed}) {
+        const int stride = (op == Op::kAsIs ? n : k) + 3;
+        const std::vector<float> b = random_values<float>(size_t(op == Op::kAsIs ? k : n) * stride, 1);
+        Packed<float> alone, together;
+        alone.pack(op, k, n, b.data(), stride);
+        together.pack(parallel, op, k, n, b.data(), stride);
+        EXPECT_EQ(together.k(), k);
+        EXPECT_EQ(together.n(), n);
+        EXPECT_EQ(std::memcmp(together.data(), alone.data(), kernels<float>().packed_size(k, n) * sizeof(float)), 0) << k << " x " << n;
+      }
+  });
 }
 
 TEST(Gemm, NothingToSumIsZero) {

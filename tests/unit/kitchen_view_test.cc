@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <map>
 #include <thread>
 
 #include "base/hash.h"
@@ -222,26 +223,33 @@ std::vector<float> features_of(const Picture& rgb) {
   return features;
 }
 
-TEST(KitchenFeatures, AreOfTheExtractorThatFilesName) { EXPECT_EQ(hex(extractor_hash()), "e45a11ea24a6c8f3"); }
+TEST(KitchenFeatures, AreOfTheExtractorThatFilesName) { EXPECT_EQ(hex(extractor_hash()), "097a5f6eeea27681"); }
 
-TEST(KitchenFeatures, AreMeansOverCells) {
-  Picture rgb(kSmallView * kSmallView * 3, 0);
-  const std::vector<float> black = features_of(rgb);
-  for (int cell = 1; cell < 64; ++cell) ASSERT_TRUE(std::equal(black.begin(), black.begin() + 32, black.begin() + cell * 32));
-  for (size_t at = 0; at < rgb.size(); at += 3) rgb[at] = 200, rgb[at + 1] = 30, rgb[at + 2] = 90;
-  const std::vector<float> red = features_of(rgb);
-  // Half of the pixels of cell (2, 5) black: the mean of both.
-  for (int x = 20; x < 24; ++x)
-    for (int y = 8; y < 10; ++y) std::memset(rgb.data() + (y * kSmallView + x) * 3, 0, 3);
-  const std::vector<float> mixed = features_of(rgb);
-  int differ = 0;
-  for (int i = 0; i < kViewFeatures; ++i) {
-    const size_t at = size_t(i);
-    ASSERT_NEAR(mixed[at], i / 32 == 2 * 8 + 5 ? (red[at] + black[at]) / 2 : red[at], 1e-6) << i;
-    ASSERT_GE(mixed[at], 0);
-    differ += red[at] != black[at];
+// Holds a cell's 64 features to those of the bins named, and zero.
+void expect_bins(const std::vector<float>& features, int cell, const std::map<int, float>& want) {
+  for (int bin = 0; bin < 64; ++bin) {
+    const auto found = want.find(bin);
+    EXPECT_NEAR(features[size_t(cell * 64 + bin)], found == want.end() ? 0 : found->second, 1e-5) << "cell " << cell << ", bin " << bin;
   }
-  EXPECT_GT(differ, kViewFeatures / 4);
+}
+
+TEST(KitchenFeatures, AreSoftHistogramsOfCells) {
+  Picture rgb(kSmallView * kSmallView * 3, 0);
+  for (int cell = 0; cell < 32; ++cell) expect_bins(features_of(rgb), cell, {{0, 8.0f}});
+  // Rows 8 to 11 and columns 16 to 23 are cell (2, 2): a quarter of it white, another quarter between two levels of red and at a level of blue.
+  const auto paint = [&](int y, Colour colour) {
+    for (int x = 16; x < 24; ++x) {
+      uint8_t* pixel = rgb.data() + (y * kSmallView + x) * 3;
+      pixel[0] = uint8_t(colour.r);
+      pixel[1] = uint8_t(colour.g);
+      pixel[2] = uint8_t(colour.b);
+    }
+  };
+  paint(8, {255, 255, 255});
+  paint(9, {102, 0, 170});  // a fifth of the way from the second to the third level
+  const std::vector<float> features = features_of(rgb);
+  const std::map<int, float> painted = {{0, 8 * std::sqrt(0.5f)}, {16 + 2, 8 * std::sqrt(0.8f / 4)}, {32 + 2, 8 * std::sqrt(0.2f / 4)}, {63, 8 * std::sqrt(0.25f)}};
+  for (int cell = 0; cell < 32; ++cell) expect_bins(features, cell, cell == 2 * 4 + 2 ? painted : std::map<int, float>{{0, 8.0f}});
 }
 
 TEST(KitchenFeatures, TellVisibleThingsApart) {

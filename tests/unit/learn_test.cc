@@ -464,7 +464,7 @@ TEST(Recipe, SomeValuesAreTheMethods) {
   }
 }
 
-ImitationOptions from_command_line(std::vector<std::string> arguments) {
+ImitationOptions from_command_line(std::vector<std::string> arguments, const std::string& method = "synpo") {
   RecipeOptions recipe_options;
   Options options("tool", "", "");
   recipe_options.add_to(options);
@@ -474,7 +474,7 @@ ImitationOptions from_command_line(std::vector<std::string> arguments) {
   argv.push_back(nullptr);
   options.parse(int(argv.size()) - 1, argv.data());
   EXPECT_EQ(recipe_options.given(), arguments.size() > 1);
-  return recipe_options.result("synpo");
+  return recipe_options.result(method);
 }
 
 TEST(Recipe, FromTheCommandLine) {
@@ -485,10 +485,13 @@ TEST(Recipe, FromTheCommandLine) {
     want.task_loss = 0.5;
     EXPECT_EQ(describe_options(from_command_line(arguments)), describe_options(want));
   }
-  ImitationOptions want = recipe("fast");
+  ImitationOptions want = recipe("fast", "sf");
   want.env_loss = want.task_loss = want.reward_loss = 0;
   want.sf_loss = 2;
-  EXPECT_EQ(describe_options(from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "ce"})), describe_options(want));
+  EXPECT_EQ(describe_options(from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "ce"}, "sf")), describe_options(want));
+  EXPECT_EQ(thrown([] { from_command_line({"--sf-loss", "ce"}, "mlp"); }), "64 -m mlp has no --sf-loss");
+  EXPECT_EQ(thrown([] { from_command_line({"--dropout", "0.1"}); }), "64 -m synpo has no --dropout");
+  EXPECT_EQ(from_command_line({"--action-embedding", "3"}, "mtl").action_embedding, 3);
   EXPECT_EQ(thrown([] { from_command_line({"--sf-loss", "0"}); }), "64 option --sf-loss: found '0', expected td, q or ce; try 'tool --help'");
   EXPECT_EQ(thrown([] { from_command_line({"--recipe", "paper", "--roll-in", "0.5"}); }), "64 --roll-in needs --batch-states");
   EXPECT_EQ(thrown([] { from_command_line({"--recipe", "slow"}); }), "64 option --recipe: found 'slow', expected fast or paper; try 'tool --help'");

@@ -7,11 +7,13 @@
 #include "nn/buffer.h"
 #include "nn/dense.h"
 #include "nn/frozen_perceptron.h"
+#include "nn/gemm.h"
 #include "nn/layout.h"
 #include "nn/loss.h"
 #include "nn/norm.h"
 #include "nn/perceptron.h"
 #include "numbers.h"
+#include "targets.h"
 
 namespace synpo {
 namespace {
@@ -177,6 +179,31 @@ TEST(Dense, BackwardIsFiniteDifferences) {
       for (size_t i = 0; i < dw.size(); i += 5) ASSERT_NEAR(dw[i], central_difference(run.w[i], 1e-7, loss) + 2, 1e-6);
       for (size_t i = 0; i < db.size(); ++i) ASSERT_NEAR(db[i], central_difference(run.b[i], 1e-7, loss) + 3, 1e-6);
     }
+}
+
+// Large layers are packed and cut otherwise than small ones, which must not show.
+TEST(Dense, ALargeLayersBitsAreThoseOfItsProducts) {
+  constexpr int kRows = 515, kIn = 1030, kOut = 1040;
+  const std::vector<float> x = random_values<float>(kRows * kIn, 1), w = random_values<float>(kIn * kOut, 2), dy = random_values<float>(kRows * kOut, 3);
+  const auto product = [](Op op_a, Op op_b, int m, int n, int k, const std::vector<float>& a, int lda, const std::vector<float>& b, int ldb, float before) {
+    std::vector<float> c(size_t(m) * n, before);
+    gemm(op_a, op_b, m, n, k, a.data(), lda, b.data(), ldb, c.data(), n, true);
+    return c;
+  };
+  for_every_target([&](const std::string&) {
+    const std::vector<float> want_y = product(Op::kAsIs, Op::kAsIs, kRows, kOut, kIn, x, kIn, w, kOut, 0);
+    const std::vector<float> want_dx = product(Op::kAsIs, Op::kTransposed, kRows, kIn, kOut, dy, kOut, w, kOut, 2);
+    const std::vector<float> want_dw = product(Op::kTransposed, Op::kAsIs, kIn, kOut, kRows, x, kIn, dy, kOut, 3);
+    for (const int threads : {1, 2}) {
+      Parallel parallel(threads);
+      std::vector<float> y(kRows * kOut), d = dy, dx(kRows * kIn, 2), dw(kIn * kOut, 3);
+      dense_forward<float>(parallel, kRows, kIn, kOut, x.data(), w.data(), nullptr, false, y.data());
+      dense_backward<float>(parallel, kRows, kIn, kOut, x.data(), w.data(), nullptr, d.data(), dx.data(), true, dw.data(), nullptr);
+      EXPECT_TRUE(y == want_y) << threads;
+      EXPECT_TRUE(dx == want_dx) << threads;
+      EXPECT_TRUE(dw == want_dw) << threads;
+    }
+  });
 }
 
 TEST(FrozenPerceptron, IsThePerceptron) {

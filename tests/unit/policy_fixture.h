@@ -15,13 +15,33 @@
 
 namespace synpo {
 
+inline std::vector<uint8_t> bytes_of(const std::vector<float>& values) {
+  const uint8_t* bytes = reinterpret_cast<const uint8_t*>(values.data());
+  return {bytes, bytes + values.size() * sizeof(float)};
+}
+
+inline std::vector<uint8_t> random_observations(int size, const PolicyShape& shape, Random& random) {
+  if (shape.sight == Sight::kPictures) {
+    std::vector<uint8_t> pictures(size_t(size) * kGridCells * kHistory);
+    for (uint8_t& colour : pictures) colour = uint8_t(random.below(kGridColours));
+    return pictures;
+  }
+  const size_t views = size_t(kHistory) * shape.views.view, row = views + kHandFloats;
+  std::vector<float> floats(size * row, 0.0f);
+  for (int i = 0; i < size; ++i) {
+    for (size_t j = 0; j < views; ++j) floats[i * row + j] = float(random.uniform());
+    floats[i * row + views] = float(random.below(uint32_t(shape.views.objects)));
+  }
+  return bytes_of(floats);
+}
+
 // Steps with everything drawn at random.
 template <class T>
 struct RandomSteps {
   RandomSteps(int size, const PolicyShape& shape, uint64_t seed)
-      : pictures(size_t(size) * kGridCells * kHistory), reward(random_values<T>(size, seed)), planner_q(random_values<T>(size_t(size) * shape.actions, seed + 1)) {
+      : reward(random_values<T>(size, seed)), planner_q(random_values<T>(size_t(size) * shape.actions, seed + 1)) {
     Random random(seed, Purpose::kBatch);
-    for (uint8_t& colour : pictures) colour = uint8_t(random.below(kGridColours));
+    observations = random_observations(size, shape, random);
     for (int i = 0; i < size; ++i) {
       env.push_back(int(random.below(uint32_t(shape.envs))));
       task.push_back(int(random.below(uint32_t(shape.tasks))));
@@ -31,10 +51,10 @@ struct RandomSteps {
     for (int i = 0; i < size; ++i) next.push_back(int(random.below(uint32_t(size + 2))) - 2);
   }
   StepBatch<T> batch(uint64_t update = 0) const {
-    return {int(env.size()), pictures.data(), env.data(),  task.data(), label.data(),    taken.data(),
-            reward.data(),   /*seed=*/1,      update, next.data(), planner_q.data()};
+    return {int(env.size()), observations.data(), env.data(), task.data(), label.data(),    taken.data(),
+            reward.data(),   /*seed=*/1,          update,     next.data(), planner_q.data()};
   }
-  std::vector<uint8_t> pictures;
+  std::vector<uint8_t> observations;
   std::vector<int> env, task, label, taken, next;
   std::vector<T> reward, planner_q;
 };
@@ -94,6 +114,15 @@ inline PolicyShape tiny_shape(bool normalise) {
   shape.head_hidden = 9;
   shape.seam = 5;
   shape.normalise_input = shape.normalise_embeddings = normalise;
+  return shape;
+}
+
+// That of a policy of features, which has an action count of its own.
+inline PolicyShape tiny_feature_shape() {
+  PolicyShape shape = tiny_shape(false);
+  shape.sight = Sight::kFeatures;
+  shape.views = {5, 4, 3, 2, 6};
+  shape.actions = 7;
   return shape;
 }
 

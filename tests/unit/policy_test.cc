@@ -27,9 +27,9 @@ TEST(SynPo, StatisticsOfTheInputAreThePixels) {
   for (int channel = 0; channel < kViewChannels; ++channel) {
     const double count = 37 * kGridCells;
     double sum = 0, squares = 0;
-    for (size_t at = channel / 3; at < steps.pictures.size(); at += kHistory) {
-      sum += pixel(steps.pictures[at], channel);
-      squares += std::pow(pixel(steps.pictures[at], channel), 2);
+    for (size_t at = channel / 3; at < steps.observations.size(); at += kHistory) {
+      sum += pixel(steps.observations[at], channel);
+      squares += std::pow(pixel(steps.observations[at], channel), 2);
     }
     EXPECT_NEAR(net.statistics[mean_at + channel], 0.1 * sum / count, 1e-9);
     EXPECT_NEAR(net.statistics[variance_at + channel], 0.9 + 0.1 * (squares - sum * sum / count) / (count - 1), 1e-8);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "base/parallel.h"
@@ -17,16 +16,14 @@ namespace {
 constexpr TemporalSizes kTiny = {5, 4, 3, 2, 6};
 constexpr int kFeature = 3;
 
-std::vector<uint8_t> bytes_of(int n, const std::vector<float>& views, const std::vector<int>& hands, int view) {
+std::vector<uint8_t> observations_of(int n, const std::vector<float>& views, const std::vector<int>& hands, int view) {
   const size_t row = size_t(kHistory) * view + kHandFloats;
   std::vector<float> floats(n * row, 0);
   for (int i = 0; i < n; ++i) {
     std::copy_n(views.begin() + size_t(i) * kHistory * view, size_t(kHistory) * view, floats.begin() + i * row);
     floats[i * row + size_t(kHistory) * view] = float(hands[i]);
   }
-  std::vector<uint8_t> bytes(floats.size() * sizeof(float));
-  std::memcpy(bytes.data(), floats.data(), bytes.size());
-  return bytes;
+  return bytes_of(floats);
 }
 
 // A network over random observations.
@@ -35,7 +32,7 @@ struct Fixture {
   Fixture(const TemporalSizes& sizes, int feature, int n) : n(n), net(sizes, feature, layout), views(random_values<float>(size_t(n) * kHistory * sizes.view, 3)) {
     Random random(1, Purpose::kBatch);
     for (int i = 0; i < n; ++i) hands.push_back(int(random.below(uint32_t(sizes.objects))));
-    observations = bytes_of(n, views, hands, sizes.view);
+    observations = observations_of(n, views, hands, sizes.view);
     parameters.assign(layout.total(), T(0));
     gradient.assign(layout.total(), T(7));  // backward() overwrites
     net.initialise(5, parameters.data(), nullptr);
@@ -143,8 +140,20 @@ TEST(TemporalNet, InferenceGivesWhatTrainingGave) {
   for (size_t i = 0; i < psi.size(); ++i) ASSERT_NEAR(again[i], psi[i], 1e-5 * (1 + std::abs(psi[i]))) << i;
 }
 
+TEST(TemporalNet, ObservationsMayStandAnywhere) {
+  Fixture<float> f(kTiny, kFeature, 9);
+  Parallel parallel(1);
+  const std::vector<float> psi = f.psi(parallel, kFeature);
+  const std::vector<uint8_t> bytes = f.observations;
+  f.observations.resize(bytes.size() + 1);
+  std::copy(bytes.begin(), bytes.end(), f.observations.begin() + 1);
+  std::vector<float> out(psi.size());
+  f.net.forward(parallel, f.n, f.observations.data() + 1, f.parameters.data(), nullptr, out.data(), false);
+  EXPECT_EQ(out, psi);
+}
+
 TEST(TemporalNet, ThreadsDoNotShowInTheGradient) {
-  const TemporalSizes sizes = {200, 136, 8, 32, 40};
+  const TemporalSizes sizes = {600, 520, 8, 32, 40};  // so large that threads pack them together
   std::vector<float> gradients[2];
   for (const int threads : {1, 2}) {
     Fixture<float> f(sizes, 16, 150);

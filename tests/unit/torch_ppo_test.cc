@@ -1,4 +1,4 @@
-// Advantages, the clipped loss and RMSProp against the numbers of scripts/torch_reference.py ppo.
+// Advantages, the clipped loss and RMSProp against the numbers of scripts/torch_ppo.py.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,0 +1,20 @@
+// What the pictures of an episode share, whatever its world: which moments to show, and the words for how it ended.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "world/world.h"
+
+namespace synpo {
+
+// Of `steps` actions, numbered from 0, at most `count`, rising: the first, the last and `events`, and others as evenly between them as can be. Where
+// `count` is below the number of the former, the first, the last and then the earliest events come before others.
+std::vector<int> spread_moments(int steps, const std::vector<int>& events, int count);
+
+// "1 step", "2 steps"
+std::string counted(int n, const char* one, const char* many);
+
+// "success after 41 steps (39 would do), reward 11.60"; `fewest` steps are what the planner takes.
+std::string describe_end(const std::string& outcome, const std::vector<WorldStep>& results, int fewest);
+
+}  // namespace synpo

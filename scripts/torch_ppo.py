@@ -1,0 +1,212 @@
+#!/usr/bin/python3
+"""PPO of synpo in PyTorch (torch_reference.py): the reference of the C++ engine.
+
+  torch_ppo.py dump -o FILE [--seed S]
+      what PPO is made of, in float64 as safetensors: advantages, the clipped loss and its gradients, RMSProp;
+      with the default seed tests/data/torch_ppo.safetensors
+  torch_ppo.py bench --threads T [--seconds S]
+      steps of the worlds per second in float32 at full width, one number on stdout
+"""
+import argparse
+import copy
+import itertools
+import sys
+
+sys.dont_write_bytecode = True  # no __pycache__ among the scripts
+import torch_reference as reference  # before numpy and torch, whose environment it sets
+import numpy as np
+import torch
+from torch import nn
+from torch.nn import functional as F
+
+ACTIONS = reference.ACTIONS["pictures"]
+GOES_ON, TERMINATED, TRUNCATED = range(3)
+LANES, ROLLOUT, EPOCHS, MINIBATCHES = 16, 128, 4, 4
+GAMMA, LAMBDA = 0.99, 0.95
+CLIP, ENTROPY_WEIGHT, GRADIENT_NORM = 0.1, 0.01, 0.5
+RMSPROP = dict(lr=2.5e-5, alpha=0.99, eps=1e-8, weight_decay=1e-4)
+LONG_STEPS = dict(RMSPROP, lr=0.01, weight_decay=0.1)  # so that three of them show
+AUXILIARY = dict(reward=0.01, env=0.1, task=0.001)
+VALUE_HIDDEN = 512
+
+
+# --- dump ----------------------------------------------------------------------------------------
+
+def next_values(value, end, cut_value, last_value):
+    """V of the state behind each step, 0 behind a terminal one."""
+    behind = torch.cat([value[1:], last_value[None]])
+    return torch.where(end == TRUNCATED, cut_value, behind) * (end != TERMINATED)
+
+
+def advantages(reward, value, end, cut_value, last_value):
+    """By the definition: the sum of (gamma lambda)^l delta_(t+l) up to the episode's end."""
+    delta = reward + GAMMA * next_values(value, end, cut_value, last_value) - value
+    result = torch.zeros_like(delta)
+    for t, lane in itertools.product(*map(range, delta.shape)):
+        for later in range(t, len(delta)):
+            result[t, lane] += (GAMMA * LAMBDA) ** (later - t) * delta[later, lane]
+            if end[later, lane] != GOES_ON:
+                break
+    return result
+
+
+def advantage_results(rng, steps=9, lanes=3):
+    """Lane 0 ends twice, lane 1 is cut and then ends with the rollout, lane 2 goes on."""
+    end = np.zeros((steps, lanes), np.uint8)
+    end[2, 0] = end[6, 0] = end[steps - 1, 1] = TERMINATED
+    end[4, 1] = TRUNCATED
+    draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
+    given = dict(reward=draw(steps, lanes), value=draw(steps, lanes), end=end, cut_value=draw(steps, lanes), last_value=draw(lanes))
+    tensors = {name: torch.from_numpy(array if name == "end" else array.astype(np.float64)) for name, array in given.items()}
+    return {**given, "advantage": advantages(**tensors).numpy()}
+
+
+def ppo_losses(logits, action, old_log_probability, advantage, value, target):
+    """Mean -objective, half-squared error of the value, and entropy."""
+    distribution = torch.distributions.Categorical(logits=logits)
+    ratio = (distribution.log_prob(action) - old_log_probability).exp()
+    objective = torch.min(ratio * advantage, ratio.clamp(1 - CLIP, 1 + CLIP) * advantage)
+    return -objective.mean(), 0.5 * F.mse_loss(value, target), distribution.entropy().mean(), ratio
+
+
+def clipped_results(rng, count=24):
+    """Ratios below, within and above the clip, for advantages of both signs, and off its edges by more than float32 rounds."""
+    draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
+    logits, action = draw(count, ACTIONS), rng.integers(0, ACTIONS, count)
+    wanted = np.resize((0.6, 0.87, 0.93, 1.06, 1.13, 1.7), count) * rng.uniform(0.99, 1.01, count)
+    advantage = np.abs(draw(count)) * np.where(np.arange(count) // 6 % 2, 1, -1).astype(np.float32)
+    log_probability = F.log_softmax(torch.from_numpy(logits).double(), 1)[torch.arange(count), torch.from_numpy(action)].numpy()
+    given = dict(logits=logits, action=action, old_log_probability=(log_probability - np.log(wanted)).astype(np.float32),
+                 advantage=advantage, predicted=draw(count), target=draw(count))
+    tensors = {name: torch.from_numpy(array.astype(np.float64) if array.dtype == np.float32 else array) for name, array in given.items()}
+    leaves = [tensors[name].requires_grad_() for name in ("logits", "predicted")]
+    policy, value, entropy, ratio = ppo_losses(*tensors.values())
+    (policy + value - ENTROPY_WEIGHT * entropy).backward()
+    extremes = [(ratio - 1 - ratio.log()).mean(), ((ratio - 1).abs() > CLIP).double().mean(), ratio.max(), ratio.min()]
+    return {**given, "losses": np.array([x.item() for x in (policy, value, entropy, *extremes)]),
+            "dlogits": leaves[0].grad.numpy(), "dpredicted": leaves[1].grad.numpy()}
+
+
+def rmsprop_results(rng, steps=3):
+    """Gradients of two tensors, of which the last step's together are shorter than the clip."""
+    draw = lambda *shape: rng.normal(size=shape)
+    parameters = [nn.Parameter(torch.from_numpy(draw(count))) for count in (7, 4)]
+    gradients = draw(steps, 11) * np.array([1, 3, 0.05])[:, None]
+    joined = lambda tensors: torch.cat(tensors).detach().numpy().copy()
+    start, after = joined(parameters), []
+    optimiser = torch.optim.RMSprop(parameters, **LONG_STEPS)
+    for gradient in torch.from_numpy(gradients):
+        for parameter, part in zip(parameters, gradient.split((7, 4))):
+            parameter.grad = part.clone()
+        nn.utils.clip_grad_norm_(parameters, GRADIENT_NORM)
+        optimiser.step()
+        after.append(joined(parameters))
+    square = joined([optimiser.state[parameter]["square_avg"] for parameter in parameters])
+    return dict(parameter=start, gradient=gradients, after=np.stack(after), square=square)
+
+
+def dump(args):
+    rng = np.random.default_rng(args.seed)
+    parts = dict(gae=advantage_results(rng), clip=clipped_results(rng), rmsprop=rmsprop_results(rng))
+    tensors = {f"{part}.{name}": array for part, results in parts.items() for name, array in results.items()}
+    metadata = dict(discount=GAMMA, **{"lambda": LAMBDA}, clip=CLIP, entropy=ENTROPY_WEIGHT, gradient_norm=GRADIENT_NORM, **LONG_STEPS)
+    reference.write_safetensors(args.output, tensors, {key: str(value) for key, value in metadata.items()})
+
+
+# --- bench ---------------------------------------------------------------------------------------
+
+class Learner:
+    """PPO on SynPo. Worlds stepped in Python would be slow through no fault of PyTorch: what the lanes see and how they are rewarded is drawn
+    beforehand, and costs nothing here."""
+
+    def __init__(self, net, worlds, memory_format, head, foreach, rollout=ROLLOUT, minibatches=MINIBATCHES):
+        layout = torch.channels_last if memory_format == "channels_last" else torch.contiguous_format
+        self.net = net.to(memory_format=layout).eval()  # frozen statistics
+        self.value = reference.Mlp(net.w.feature + 2 * net.w.embedding, VALUE_HIDDEN, 1)
+        self.head = getattr(reference.SynPo, head)
+        self.rollout, self.minibatches = rollout, minibatches
+        count = rollout * LANES
+        self.worlds = {name: tensor[:count] for name, tensor in worlds.items()}
+        self.worlds["input"] = self.worlds["input"].contiguous(memory_format=layout)
+        self.parameters = [*net.parameters(), *self.value.parameters()]
+        self.optimiser = torch.optim.RMSprop(self.parameters, foreach=foreach, **RMSPROP)
+
+    def values(self, psi, embedded):
+        return self.value(torch.cat([psi, embedded.detach()], 1)).squeeze(1)
+
+    @torch.no_grad()
+    def collect(self):
+        """A rollout's steps, [steps * lanes] each."""
+        encoder = reference.fused(self.net.encoder)
+        pairs, index = self.net.pairs(self.worlds)
+        alpha = self.net.alpha(pairs)
+        of_step = lambda tensor: tensor.split(LANES)
+        chosen = []
+        for picture, row in zip(of_step(self.worlds["input"]), of_step(index)):
+            psi = encoder(picture)
+            distribution = torch.distributions.Categorical(logits=self.head(self.net, psi, None, alpha, row) + self.net.policy["bias"])
+            action = distribution.sample()
+            chosen.append((action, distribution.log_prob(action), self.values(psi, pairs[row])))
+        action, log_probability, value = (torch.stack(part) for part in zip(*chosen))
+        in_lanes = lambda name: self.worlds[name].view(-1, LANES)
+        delta = in_lanes("reward") + GAMMA * next_values(value, in_lanes("end"), value, value[-1]) - value
+        keep = (in_lanes("end") == GOES_ON) * (GAMMA * LAMBDA)
+        advantage, behind = torch.empty_like(delta), 0
+        for t in reversed(range(len(delta))):
+            advantage[t] = behind = delta[t] + keep[t] * behind
+        target = advantage + value
+        advantage = (advantage - advantage.mean()) / (advantage.std(unbiased=False) + 1e-8)
+        made = dict(label=action, taken=action, log_probability=log_probability, advantage=advantage, target=target)
+        return {**self.worlds, **{name: tensor.flatten() for name, tensor in made.items()}}
+
+    def learn(self, batch):
+        self.optimiser.zero_grad(set_to_none=True)
+        losses, logits, psi = self.net.losses(batch, self.head)
+        value = self.values(psi, self.net.embedded(batch))
+        policy, error, entropy, _ = ppo_losses(logits, batch["taken"], batch["log_probability"], batch["advantage"], value, batch["target"])
+        auxiliary = sum(weight * losses[name] for name, weight in AUXILIARY.items())
+        (policy + error - ENTROPY_WEIGHT * entropy + auxiliary).backward()
+        nn.utils.clip_grad_norm_(self.parameters, GRADIENT_NORM)
+        self.optimiser.step()
+
+    def update(self):
+        steps = self.collect()
+        count = self.rollout * LANES
+        for _ in range(EPOCHS):
+            for rows in torch.randperm(count).split(count // self.minibatches):
+                self.learn({name: tensor[rows] for name, tensor in steps.items()})
+
+
+def random_worlds(count, w, rng):
+    """What the lanes meet: an episode ends after 40 steps or so."""
+    batch = reference.to_torch(reference.random_batch(count, w, rng, pairs=144), torch.float32)
+    ends = np.where(rng.random(count) < 1 / 40, TERMINATED, GOES_ON).astype(np.uint8)
+    return dict({name: batch[name] for name in ("input", "env", "task", "reward")}, end=torch.from_numpy(ends))
+
+
+def bench(args):
+    reference.prepare(args.threads)
+    net = reference.SynPo(reference.widths(reference.FULL["pictures"], "pictures"))
+    reference.randomise(net, torch.Generator().manual_seed(0))
+    worlds = random_worlds(ROLLOUT * LANES, net.w, np.random.default_rng(0))
+    # A quarter of an update, with minibatches of the same size.
+    trial = lambda **choice: min(reference.step_times(Learner(copy.deepcopy(net), worlds, **choice, rollout=ROLLOUT // 4, minibatches=1).update, 0.5))
+    choice = reference.fastest(dict(reference.OPTIONS["pictures"], foreach=(True, False)), trial)
+    reference.report(ROLLOUT * LANES, reference.step_times(Learner(net, worlds, **choice).update, args.seconds), choice)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(dest="command", required=True)
+    p = commands.add_parser("dump")
+    p.add_argument("-o", "--output", required=True)
+    p.add_argument("--seed", type=int, default=1)
+    p = commands.add_parser("bench")
+    p.add_argument("--threads", type=int, required=True)
+    p.add_argument("--seconds", type=float, default=8)
+    args = parser.parse_args()
+    {"dump": dump, "bench": bench}[args.command](args)
+
+
+if __name__ == "__main__":
+    main()
