@@ -52,7 +52,7 @@ int matrix_split(int argc, char** argv) {
       .call(0, "cover", "COUNT", "at least so many seen per environment and task [4, or what -n allows]", count_into(plan.cover))
       .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
       .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, or any for names of your own", world)
+      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own", world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")

@@ -115,7 +115,8 @@ int view(int argc, char** argv) {
 }
 
 int body(int argc, char** argv) {
-  return run_commands("synpo-render", "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and policies as PNG; runs networks over views.",
+  return run_commands("synpo-render",
+                      "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and policies as PNG; runs networks over views.",
                       {{"heatmap", "success matrices", heatmap},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes and kitchens", map},

@@ -40,8 +40,8 @@ Model fresh_model(const std::string& method, const PolicyShape& shape, const Ini
 
 // Whether some of its environments lie in files of their own.
 bool lies_in_files(const Checkpoint& checkpoint);
-// The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where they are not there, are other ones, or
-// don't fit this build, kUsage where there is no source.
+// The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where they are not there, are other
+// ones, or don't fit this build, kUsage where there is no source.
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source = nullptr);
 // The same with the argument of -w, which may be empty. Throws kUsage where a checkpoint that holds its environments is given one.
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source);

@@ -122,12 +122,13 @@ SceneKitchen to_kitchen(Scene scene) {
       const auto as_closed = [&](const std::vector<int32_t>& all, size_t things) {
         return std::equal(part(all, things, doors), part(all, things, doors) + poses * things, part(all, things, 0));
       };
+      const auto lists = [&](const std::vector<int32_t>& all, size_t things) { return seen_lists(part(all, things, doors), poses, things); };
       if (doors > 0 && as_closed(scene.object_distance, kKitchenObjects) && as_closed(scene.receptacle_distance, kKitchenReceptacles)) {
         tables.sight[doors] = tables.sight[0];
         continue;
       }
-      tables.sight[doors] = std::make_shared<KitchenSight>(KitchenSight{seen_lists(part(scene.object_distance, kKitchenObjects, doors), poses, kKitchenObjects),
-                                                                        seen_lists(part(scene.receptacle_distance, kKitchenReceptacles, doors), poses, kKitchenReceptacles)});
+      tables.sight[doors] = std::make_shared<KitchenSight>(
+          KitchenSight{lists(scene.object_distance, kKitchenObjects), lists(scene.receptacle_distance, kKitchenReceptacles)});
     }
     kitchen.layouts.push_back(tables);
   }

@@ -54,8 +54,8 @@ int object_in_reach(const KitchenTables& tables, int pose, int doors, const std:
 int door_in_reach(const KitchenTables& tables, int pose, int doors);
 // The receptacle that PickupPut would fill with an object in the hand, or -1.
 int receptacle_in_reach(const KitchenTables& tables, int pose, int doors);
-// Through what a running episode can come that begins with the objects on these slots, [doors, poses, kKitchenObjects + 1]: where the agent is, and what it
-// has in its hand, kEmptyHand for nothing.
+// Through what a running episode can come that begins with the objects on these slots, [doors, poses, kKitchenObjects + 1]: where the agent is, and what
+// it has in its hand, kEmptyHand for nothing.
 std::vector<bool> kitchen_reachable(const KitchenTables& tables, const std::array<uint8_t, kKitchenObjects>& slots);
 // Whether this can be a state of a running episode of a task; the layout is not looked at.
 bool kitchen_valid(const KitchenTables& tables, KitchenTask task, const WorldState& state);

@@ -81,7 +81,8 @@ SceneKitchens::SceneKitchens(std::vector<SceneKitchen> kitchens) {
   for (SceneKitchen& kitchen : kitchens) {
     add_environment({kitchen.name, kitchen.hash, ""});
     if (!all_.empty() && kitchen.extractor != extractor())
-      fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ", quoted(extractor()), " as of ", environments()[0].name);
+      fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ", quoted(extractor()), " as of ",
+           environments()[0].name);
     all_.push_back(std::make_shared<const Scene>(std::move(kitchen)));
   }
 }
