@@ -17,7 +17,7 @@ void relabel(const World& world, Output& output) {
   while (input.line(line)) {
     stop_if_asked();
     try {
-      output.write(format_trajectory(relabelled(world, parse_trajectory(line, world.actions(), world.step_limit()))) + "\n");
+      output.write(format_trajectory(relabelled(world, parse_trajectory(line, kMostActions, world.step_limit()))) + "\n");
     } catch (const Error& error) {
       input.bad_line(error.what());
     }

@@ -8,6 +8,7 @@
 namespace synpo {
 
 constexpr int kTrajectoryVersion = 1;
+constexpr int kMostActions = 256;  // of any world
 
 struct Trajectory {
   std::string world = "gridworld";

@@ -113,6 +113,8 @@ TEST(Replay, RefusesWhatIsNotThisWorlds) {
   };
   EXPECT_EQ(refused([](Trajectory&) {}), "nothing thrown");
   EXPECT_EQ(refused([](Trajectory& t) { t.world = "kitchen"; }), "65 world 'kitchen', expected 'gridworld'");
+  EXPECT_EQ(refused([](Trajectory& t) { t.world = "kitchen", t.actions[0] = 6; }), "65 world 'kitchen', expected 'gridworld'");
+  EXPECT_EQ(refused([](Trajectory& t) { t.actions[0] = 5; }), "65 field 'actions': found '5', expected a whole number from 0 to 4");
   EXPECT_EQ(refused([](Trajectory& t) { t.rules = 2; }), "65 rules version 2, this build has 1");
   EXPECT_EQ(refused([](Trajectory& t) { t.env = "map21"; }), "65 unknown env 'map21' (other maps? see -w)");
   EXPECT_EQ(refused([](Trajectory& t) { t.task = "R-R"; }), "65 unknown task 'R-R'");
