@@ -58,6 +58,9 @@ $(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a
 $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
 	$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(OPENCV_LIBS)
 
+# Tests run for seconds and are compiled for minutes.
+$(TEST_OBJ): ALL_CXXFLAGS += -O1
+
 # Eigen, the yardstick there, knows no dispatch at run time.
 $(B)/tests/bench/synpo-bench.o: ALL_CXXFLAGS += -march=native
 

@@ -77,7 +77,7 @@ int body(int argc, char** argv) {
   EpisodeSink sink;
   if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
   const std::vector<PairResult> results =
-      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, world.step_limit(), temperature}, sink,
+      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, temperature}, sink,
                [&](size_t done) {
                  progress.update(done);
                  stop_if_asked();

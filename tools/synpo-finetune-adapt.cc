@@ -54,7 +54,7 @@ int adapt(int argc, char** argv) {
   Options options("synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
                   "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
-      .text('w', "world", "WORLD", "new environments too: gridworld, gridworld:DIR, kitchen or kitchen:DIR", world_name)
+      .text('w', "world", "WORLD", concat("new environments too: ", kWorldNames).c_str(), world_name)
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
       .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", trajectories, 1, 100000)
       .call(0, "train", "WHAT", "embeddings, and behind it +heads, +coefficients, or both [embeddings]",

@@ -82,7 +82,7 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
       .text(0, "resume", "FILE", "go on from such a checkpoint, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
-      .text('w', "world", "WORLD", "with --init: gridworld, gridworld:DIR, kitchen or kitchen:DIR; else the folder of the checkpoint's scenes", s.world)
+      .text('w', "world", "WORLD", concat("with --init: ", kWorldNames, "; else the folder of the checkpoint's scenes").c_str(), s.world)
       .text('m', "method", "NAME", "with --init: the method", s.method)
       .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
       .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)

@@ -17,7 +17,7 @@ void relabel(const World& world, Output& output) {
   while (input.line(line)) {
     stop_if_asked();
     try {
-      output.write(format_trajectory(relabelled(world, parse_trajectory(line, kMostActions, world.step_limit()))) + "\n");
+      output.write(format_trajectory(relabelled(world, parse_trajectory(line, kStepLimit))) + "\n");
     } catch (const Error& error) {
       input.bad_line(error.what());
     }
@@ -38,7 +38,7 @@ int gen_expert(int argc, char** argv) {
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's", noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", window, 0, 16)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen or kitchen:DIR", world_name)
+      .text('w', "world", "WORLD", kWorldNames, world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .flag('q', "quiet", "no progress", quiet);
   options.parse(argc, argv);

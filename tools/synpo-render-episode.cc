@@ -92,7 +92,7 @@ int episode(int argc, char** argv) {
                   "Draws an episode as a path through its maze or kitchen, from light to dark, and what the agent saw on the way.");
   options.text('w', "world", "WORLD", "gridworld, gridworld:DIR for the map files of a folder, or kitchen", world_name)
       .integer(0, "line", "N", "the episode's line", line, 1, INT64_MAX)
-      .integer(0, "strip", "N", "pictures of what the agent saw: the first, picks, the last, others between; 0: none", style.strip, 0, kGridStepLimit)
+      .integer(0, "strip", "N", "pictures of what the agent saw: the first, picks, the last, others between; 0: none", style.strip, 0, kStepLimit)
       .text(0, "title", "TEXT", "title instead of environment and task", style.title)
       .section("instead of the picture")
       .flag(0, "ansi", "the path through a maze as text, in coloured blocks on a terminal that has colours", ansi)

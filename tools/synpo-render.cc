@@ -100,7 +100,7 @@ int view(int argc, char** argv) {
       .text('t', "task", "NAME", "task; none: the world's first, R-B or Container-Fridge", wanted.task)
       .integer('s', "seed", "N", "seed of the start", wanted.seed, 0, INT64_MAX)
       .integer(0, "episode", "N", "number of the episode under this seed", wanted.episode, 0, UINT32_MAX)
-      .integer(0, "steps", "N", "steps of the expert from the start", wanted.steps, 0, kGridStepLimit)
+      .integer(0, "steps", "N", "steps of the expert from the start", wanted.steps, 0, kStepLimit)
       .integer(0, "window", "R", "radius of what the agent sees of a maze; 0: blind", wanted.window, 0, kGridSide - 1)
       .flag(0, "history", "the last four pictures of the network's input too", wanted.history)
       .call(0, "title", "TEXT", "title instead of environment, task and step", drawn(wanted.title));

@@ -111,7 +111,7 @@ int body(int argc, char** argv) {
               s.method = name;
             })
       .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen or kitchen:DIR", s.world)
+      .text('w', "world", "WORLD", kWorldNames, s.world)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
       .text('o', "output", "FILE", "write the checkpoint to FILE", s.output)
       .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and on SIGINT or SIGTERM", s.save)

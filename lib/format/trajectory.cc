@@ -43,12 +43,12 @@ bool truth(const Json& object, const char* field) {
   return value.get<bool>();
 }
 
-std::vector<uint8_t> action_list(const Json& value, const char* field, int actions, int step_limit) {
+std::vector<uint8_t> action_list(const Json& value, const char* field, int step_limit) {
   if (!value.is_array() || value.empty() || value.size() > size_t(step_limit))
     wrong(field, value, concat("an array of 1 to ", step_limit, " actions"));
   std::vector<uint8_t> list;
   list.reserve(value.size());
-  for (const Json& action : value) list.push_back(uint8_t(whole(field, action, 0, actions - 1)));
+  for (const Json& action : value) list.push_back(uint8_t(whole(field, action, 0, kMostActions - 1)));
   return list;
 }
 
@@ -84,7 +84,7 @@ std::string format_trajectory(const Trajectory& t) {
   return line.dump();
 }
 
-Trajectory parse_trajectory(const std::string& line, int actions, int step_limit) {
+Trajectory parse_trajectory(const std::string& line, int step_limit) {
   // Nesting is two deep in the format: depth is bounded here, before anything recurses over it.
   int depth = 0;
   const Json object = Json::parse(
@@ -116,8 +116,8 @@ Trajectory parse_trajectory(const std::string& line, int actions, int step_limit
     if (!place.is_array() || place.size() != 2) wrong("start", place, "[row, column]");
     t.start[name] = {int(whole("start", place[0], -kPlaceLimit, kPlaceLimit)), int(whole("start", place[1], -kPlaceLimit, kPlaceLimit))};
   }
-  t.actions = action_list(need(object, "actions"), "actions", actions, step_limit);
-  if (object.contains("labels")) t.labels = action_list(object["labels"], "labels", actions, step_limit);
+  t.actions = action_list(need(object, "actions"), "actions", step_limit);
+  if (object.contains("labels")) t.labels = action_list(object["labels"], "labels", step_limit);
   if (!t.labels.empty() && t.labels.size() != t.actions.size())
     fail(Exit::kData, "found ", t.labels.size(), " labels for ", t.actions.size(), " actions");
   const Json& rewards = need(object, "rewards");

@@ -40,6 +40,12 @@ struct AdamFactors {
   T beta1, beta2, decay, rate, correction, epsilon, keep;
 };
 
+// The same of RMSProp: g = scale * gradient + decay * parameter, v the mean of its squares, parameter -= rate * g / (sqrt(v) + epsilon).
+template <class T>
+struct RmsPropFactors {
+  T scale, decay, smoothing, rate, epsilon;
+};
+
 template <class T>
 struct Kernels {
   // The matrix product. pack() takes op(b) [k, n] into packed_size(k, n) values, in an order that is the target's own; multiply() makes
@@ -77,6 +83,8 @@ struct Kernels {
   void (*add_bias)(int rows, int columns, const T* bias, bool relu, T* y);
   T (*dot)(int n, const T* a, const T* b);
   void (*adam)(size_t count, const AdamFactors<T>& factors, const T* gradient, T* parameter, T* m, T* v, T* average);
+  void (*rmsprop)(size_t count, const RmsPropFactors<T>& factors, const T* gradient, T* parameter, T* v);
+  double (*sum_of_squares)(size_t count, const T* values);  // taken in double
 };
 
 // The best kernels that this processor runs, or those of the target named by the environment variable SYNPO_KERNELS; one that is

@@ -54,8 +54,9 @@ struct AmxProduct {
     for (int begin = 0; begin < k; begin += kDepth) {
       const int blocks = (smaller(k - begin, kDepth) + kSide - 1) / kSide;
       for (int i = 0; i < m; i += kSide) {
+        const bool tall = m - i > 16;  // with 16 rows or fewer the lower tiles of C have nothing in them
         for (int q = 0; q < blocks; ++q)
-          for (int half = 0; half < 2; ++half) {
+          for (int half = 0; half < 1 + tall; ++half) {
             const int row = i + 16 * half, p = begin + q * kSide;
             Half* hi = left + q * kBlock + half * kTile;
             if (op == Op::kAsIs)
@@ -64,18 +65,20 @@ struct AmxProduct {
               split<Pairs::kOfRows, true>(a + size_t(p) * lda + row, lda, k - p, m - row, hi, hi + 2 * kTile);
           }
         for (int first = 0; first < n; first += kSide)
-          square(blocks, left, right + size_t(first / kSide) * blocks * kBlock, smaller(kSide, m - i), smaller(kSide, n - first),
-                 c + size_t(i) * ldc + first, ldc, accumulate || begin > 0);
+          (tall ? square<true> : square<false>)(blocks, left, right + size_t(first / kSide) * blocks * kBlock, smaller(kSide, m - i),
+                                                smaller(kSide, n - first), c + size_t(i) * ldc + first, ldc, accumulate || begin > 0);
       }
       right += size_t(round_up(n) / kSide) * blocks * kBlock;
     }
   }
 
  private:
-  // Square [rows, columns] of C += left right, over `blocks` blocks. Tiles 0 to 3 are C's, 4 and 5 A's, 6 and 7 B's.
+  // Square [rows, columns] of C += left right, over `blocks` blocks. Tiles 0 to 3 are C's, 4 and 5 A's, 6 and 7 B's; without kTall, for at most
+  // 16 rows, 2, 3 and 5 are left alone.
+  template <bool kTall>
   static void square(int blocks, const Half* left, const Half* right, int rows, int columns, float* c, int ldc, bool accumulate) {
     alignas(64) float edge[kSide * kSide];
-    const bool whole = rows == kSide && columns == kSide;
+    const bool whole = rows == (kTall ? kSide : 16) && columns == kSide;
     float* to = whole ? c : edge;
     const int stride = whole ? ldc : kSide;
     for (int i = 0; !whole && accumulate && i < rows; ++i)
@@ -84,40 +87,48 @@ struct AmxProduct {
     if (accumulate) {
       _tile_loadd(0, to, stride * 4);
       _tile_loadd(1, to + 16, stride * 4);
-      _tile_loadd(2, to + 16 * stride, stride * 4);
-      _tile_loadd(3, to + 16 * stride + 16, stride * 4);
+      if constexpr (kTall) {
+        _tile_loadd(2, to + 16 * stride, stride * 4);
+        _tile_loadd(3, to + 16 * stride + 16, stride * 4);
+      }
     } else {
       _tile_zero(0);
       _tile_zero(1);
-      _tile_zero(2);
-      _tile_zero(3);
+      if constexpr (kTall) {
+        _tile_zero(2);
+        _tile_zero(3);
+      }
     }
     for (int q = 0; q < blocks; ++q, left += kBlock, right += kBlock) {
       _tile_loadd(4, left, 64);
-      _tile_loadd(5, left + kTile, 64);
+      if constexpr (kTall) _tile_loadd(5, left + kTile, 64);
       _tile_loadd(6, right + 2 * kTile, 64);
       _tile_loadd(7, right + 3 * kTile, 64);
-      add_products();
+      add_products<kTall>();
       _tile_loadd(6, right, 64);
       _tile_loadd(7, right + kTile, 64);
-      add_products();
+      add_products<kTall>();
       _tile_loadd(4, left + 2 * kTile, 64);
-      _tile_loadd(5, left + 3 * kTile, 64);
-      add_products();
+      if constexpr (kTall) _tile_loadd(5, left + 3 * kTile, 64);
+      add_products<kTall>();
     }
     _tile_stored(0, to, stride * 4);
     _tile_stored(1, to + 16, stride * 4);
-    _tile_stored(2, to + 16 * stride, stride * 4);
-    _tile_stored(3, to + 16 * stride + 16, stride * 4);
+    if constexpr (kTall) {
+      _tile_stored(2, to + 16 * stride, stride * 4);
+      _tile_stored(3, to + 16 * stride + 16, stride * 4);
+    }
     asm volatile("" ::: "memory");
     if (whole) return;
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < columns; ++j) c[size_t(i) * ldc + j] = edge[i * kSide + j];
   }
 
+  template <bool kTall>
   static void add_products() {
     _tile_dpbf16ps(0, 4, 6);
     _tile_dpbf16ps(1, 4, 7);
+    if constexpr (!kTall) return;
     _tile_dpbf16ps(2, 5, 6);
     _tile_dpbf16ps(3, 5, 7);
   }

@@ -126,6 +126,28 @@ struct Rows {
       for (size_t i = 0; i < count; ++i) average[i] = factors.keep * average[i] + (1 - factors.keep) * parameter[i];
   }
 
+  static void rmsprop(size_t count, const RmsPropFactors<T>& f, const T* gradient, T* parameter, T* v) {
+    const RmsPropFactors<T> factors = f;  // what is written can't be any of them
+    for (size_t i = 0; i < count; ++i) {
+      const T g = factors.scale * gradient[i] + factors.decay * parameter[i];
+      v[i] = factors.smoothing * v[i] + (1 - factors.smoothing) * g * g;
+      parameter[i] -= factors.rate * g / (root(v[i]) + factors.epsilon);
+    }
+  }
+
+  // In as many sums as the widest target has lanes, so that all with fused products come to the same bits.
+  static double sum_of_squares(size_t count, const T* values) {
+    constexpr size_t kSums = 32;
+    double sums[kSums] = {};
+    const size_t whole = count - count % kSums;
+    for (size_t i = 0; i < whole; i += kSums)
+      for (size_t j = 0; j < kSums; ++j) sums[j] += double(values[i + j]) * double(values[i + j]);
+    for (size_t i = whole; i < count; ++i) sums[i - whole] += double(values[i]) * double(values[i]);
+    double sum = 0;
+    for (const double part : sums) sum += part;
+    return sum;
+  }
+
  private:
   static float root(float x) { return __builtin_sqrtf(x); }
   static double root(double x) { return __builtin_sqrt(x); }

@@ -43,6 +43,8 @@ constexpr Kernels<T> table() {
   k.add_bias = R::add_bias;
   k.dot = R::dot;
   k.adam = R::adam;
+  k.rmsprop = R::rmsprop;
+  k.sum_of_squares = R::sum_of_squares;
   return k;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "learn/gather.h"
 #include "learn/running_episode.h"
 #include "nn/init.h"
 
@@ -161,17 +162,9 @@ Losses Adaptation::through_head(const std::vector<size_t>& drawn) {
   std::vector<size_t> rows;
   for (const size_t episode : drawn)
     for (size_t row = first_[episode]; row < first_[episode + 1]; ++row) rows.push_back(row);
-  const int n = int(rows.size()), d = model_.shape.feature;
-  std::vector<int> env(n), task(n), label(n), taken(n);
-  std::vector<float> reward(n), psi(size_t(n) * d);
-  for (int i = 0; i < n; ++i) {
-    env[i] = env_[rows[i]];
-    task[i] = task_[rows[i]];
-    label[i] = label_[rows[i]];
-    taken[i] = taken_[rows[i]];
-    reward[i] = reward_[rows[i]];
-    std::copy_n(psi_.data() + rows[i] * d, d, psi.data() + size_t(i) * d);
-  }
+  const int n = int(rows.size());
+  const std::vector<int> env = gathered(env_, rows), task = gathered(task_, rows), label = gathered(label_, rows), taken = gathered(taken_, rows);
+  const std::vector<float> reward = gathered(reward_, rows), psi = gathered(psi_, rows, size_t(model_.shape.feature));
   logits_.resize(size_t(n) * world_.actions());
   StepBatch<float> batch = {n, nullptr, env.data(), task.data(), label.data(), taken.data(), reward.data()};
   batch.psi = psi.data();

@@ -4,19 +4,9 @@
 #include <cmath>
 #include <vector>
 
-namespace synpo {
+#include "nn/softmax.h"
 
-double softmax(const float* scores, int n, double* p, double* log_p) {
-  const double top = *std::max_element(scores, scores + n);
-  double sum = 0, entropy = 0;
-  for (int a = 0; a < n; ++a) sum += p[a] = std::exp(scores[a] - top);
-  for (int a = 0; a < n; ++a) {
-    p[a] /= sum;
-    log_p[a] = scores[a] - top - std::log(sum);
-    entropy -= p[a] * log_p[a];
-  }
-  return entropy;
-}
+namespace synpo {
 
 ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& options, int actions, const float* logits, float* dlogits) {
   const int n = steps.n;
@@ -24,7 +14,12 @@ ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& 
   ClippedLosses losses;
   for (int i = 0; i < n; ++i, logits += actions, dlogits += actions) {
     const int a = steps.action[i];
-    const double entropy = softmax(logits, actions, p.data(), log_p.data());
+    const double log_sum = softmax(logits, actions, 1, p.data());
+    double entropy = 0;
+    for (int j = 0; j < actions; ++j) {
+      log_p[j] = logits[j] - log_sum;
+      entropy -= p[j] * log_p[j];
+    }
     const double log_ratio = log_p[a] - steps.log_probability[i], ratio = std::exp(log_ratio), advantage = steps.advantage[i];
     const double clipped = std::clamp(ratio, 1 - options.clip, 1 + options.clip);
     const bool limited = clipped * advantage < ratio * advantage;

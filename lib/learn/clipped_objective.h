@@ -6,9 +6,6 @@
 
 namespace synpo {
 
-// p and log p of softmax(scores), [n]; returns the entropy.
-double softmax(const float* scores, int n, double* p, double* log_p);
-
 // What was done in n steps of a rollout: the action, log pi_old of it, and its advantage.
 struct ActedSteps {
   int n;

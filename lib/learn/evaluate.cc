@@ -1,11 +1,13 @@
 #include "learn/evaluate.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 
 #include "learn/running_episode.h"
 #include "nn/loss.h"
+#include "nn/softmax.h"
 
 namespace synpo {
 namespace {
@@ -25,14 +27,9 @@ struct Lane {
 template <class Uniform>
 int choose(const float* scores, int actions, double temperature, Uniform&& uniform) {
   if (temperature == 0) return argmax(scores, actions);
-  const float top = *std::max_element(scores, scores + actions);
-  const auto weight = [&](int a) { return std::exp((scores[a] - top) / temperature); };
-  double sum = 0;
-  for (int a = 0; a < actions; ++a) sum += weight(a);
-  double left = uniform() * sum;
-  for (int a = 0; a < actions - 1; ++a)
-    if ((left -= weight(a)) < 0) return a;
-  return actions - 1;
+  std::array<double, kMostActions> p;
+  softmax(scores, actions, temperature, p.data());
+  return draw(p.data(), actions, uniform());
 }
 
 }  // namespace
@@ -95,8 +92,7 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
           lane.played.labels.push_back(uint8_t(world.expert(pair, lane.running.now())));
           lane.played.actions.push_back(uint8_t(action));
         }
-        WorldStep step = lane.running.step(world, action);
-        if (lane.running.now().steps >= options.step_limit && !step.terminated) step.truncated = true;
+        const WorldStep step = lane.running.step(world, action);
         lane.reward_cents += step.reward_cents;
         if (sink) lane.rewards.push_back(step.reward_cents);
         if (!step.ended()) {
@@ -154,7 +150,7 @@ RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, co
     model.policy->prepare_inference(parallel, parameters, statistics, pairs);
     PairResult sum;
     for (const PairResult& result :
-         evaluate(parallel, *model.policy, world, groups[seen], jobs, {model.seed, model.window, world.step_limit(), model.policy->temperature()}))
+         evaluate(parallel, *model.policy, world, groups[seen], jobs, {model.seed, model.window, model.policy->temperature()}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;

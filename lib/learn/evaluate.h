@@ -24,7 +24,6 @@ struct EvalEpisode {
 struct EvalOptions {
   uint64_t seed = 1;
   int window = 1;
-  int step_limit = 300;
   double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
 };
 

@@ -49,7 +49,7 @@ void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, cons
     if (!world.valid(e.pair, e.start)) bad();
     const size_t steps = head[kPair + kStart] | head[kPair + kStart + 1] << 8;
     at += kHead;
-    if (steps < 1 || steps > size_t(world.step_limit()) || bytes.size() - at < 2 * steps) bad();
+    if (steps < 1 || steps > size_t(kStepLimit) || bytes.size() - at < 2 * steps) bad();
     e.actions.assign(bytes.begin() + at, bytes.begin() + at + steps);
     e.labels.assign(bytes.begin() + at + steps, bytes.begin() + at + 2 * steps);
     for (size_t i = 0; i < 2 * steps; ++i)

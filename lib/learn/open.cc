@@ -44,7 +44,7 @@ std::unique_ptr<World> open_world(const std::string& name) {
   if (name == "kitchen") return std::make_unique<KitchenSet>();
   if (name.starts_with(scenes)) return std::make_unique<SceneKitchens>(read_kitchens(name.substr(scenes.size())));
   if (name == "gridworld" || name.starts_with("gridworld:")) return std::make_unique<GridSet>(open_mazes(name));
-  fail(Exit::kUsage, "unknown world ", quoted(name), ", expected gridworld, gridworld:DIR, kitchen or kitchen:DIR");
+  fail(Exit::kUsage, "unknown world ", quoted(name), ", expected ", kWorldNames);
 }
 
 std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments, const World* source) {

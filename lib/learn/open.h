@@ -8,7 +8,9 @@
 
 namespace synpo {
 
-// The world of a name on the command line: "gridworld", "gridworld:DIR", "kitchen" or "kitchen:DIR". Throws kUsage for another, kData and kNoInput
+constexpr char kWorldNames[] = "gridworld, gridworld:DIR, kitchen or kitchen:DIR";
+
+// The world of one of these names on the command line. Throws kUsage for another, kData and kNoInput
 // for what is wrong with its files.
 std::unique_ptr<World> open_world(const std::string& name);
 // A world by its name() from environments() as a file has kept them; those without content are taken from `source` by their names. Throws kData where

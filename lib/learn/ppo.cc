@@ -6,17 +6,11 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "learn/gather.h"
+#include "nn/softmax.h"
 
 namespace synpo {
 namespace {
-
-constexpr int kLook = 8;  // lanes that a thread looks at together
-
-int draw_action(const double* p, int n, double uniform) {
-  for (int a = 0; a + 1 < n; ++a)
-    if ((uniform -= p[a]) < 0) return a;
-  return n - 1;
-}
 
 // A method's row of embeddings, or nothing.
 const float* embedding_row(const Model& model, const char* name, int row, int width) {
@@ -70,8 +64,8 @@ class Ppo::RolloutObjective : public Objective<float> {
   double apply(Parallel& parallel, int n, const float* psi, const float* logits, float* dlogits, float* dpsi) override {
     const ClippingOptions& options = ppo_.options_.clipping;
     const Rollout& rollout = ppo_.rollout_;
-    const std::vector<int> action = chosen(rollout.action);
-    const std::vector<float> log_probability = chosen(rollout.log_probability), advantage = chosen(rollout.advantage);
+    const std::vector<int> action = gathered(rollout.action, rows_);
+    const std::vector<float> log_probability = gathered(rollout.log_probability, rows_), advantage = gathered(rollout.advantage, rows_);
     static_cast<ClippedLosses&>(result) =
         clipped_objective({n, action.data(), log_probability.data(), advantage.data()}, options, ppo_.world_.actions(), logits, dlogits);
     result.value = learn_value(parallel, n, psi, dpsi);
@@ -81,13 +75,6 @@ class Ppo::RolloutObjective : public Objective<float> {
   Minibatch result;
 
  private:
-  template <class T>
-  std::vector<T> chosen(const std::vector<T>& values) const {
-    std::vector<T> chosen;
-    for (const int row : rows_) chosen.push_back(values[row]);
-    return chosen;
-  }
-
   // The value's loss; its gradient to the value's own weights, and dpsi +=.
   double learn_value(Parallel& parallel, int n, const float* psi, float* dpsi) {
     const int d = ppo_.model_.shape.feature, in = ppo_.value_inputs();
@@ -95,7 +82,7 @@ class Ppo::RolloutObjective : public Objective<float> {
     for (int i = 0; i < n; ++i)
       ppo_.make_value_input(psi + size_t(i) * d, ppo_.rollout_.env[rows_[i]], ppo_.rollout_.task[rows_[i]], x.data() + size_t(i) * in);
     const float* value = ppo_.value_->forward(parallel, n, x.data(), ppo_.value_parameters_.data());
-    const double loss = value_loss(n, value, chosen(ppo_.rollout_.target).data(), dvalue.data());
+    const double loss = value_loss(n, value, gathered(ppo_.rollout_.target, rows_).data(), dvalue.data());
     std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
     ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(), ppo_.value_gradient_.data());
     // RMSProp would undo a weight in the value's own gradients: it is what psi hears of the value.
@@ -174,16 +161,18 @@ void Ppo::measure_statistics(int batches) {
 
 void Ppo::look(const std::vector<int>& lanes, uint8_t* observations, float* logits, float* psi, float* values) {
   const int n = int(lanes.size()), d = model_.shape.feature, in = value_inputs(), actions = world_.actions();
-  parallel_.run(shard_count(n, kLook), [&](int shard, int thread) {
-    const Range range = shard_range(n, kLook, shard);
-    int pair[kLook];
+  // As many as may be at once: every batch reads all weights. A lane's scores do not depend on who is with it.
+  const int together = std::min(Policy<float>::kInferenceUnit, (n + parallel_.threads() - 1) / parallel_.threads());
+  parallel_.run(shard_count(n, together), [&](int shard, int thread) {
+    const Range range = shard_range(n, together, shard);
+    std::vector<int> pair(range.size());
     std::vector<float> x(size_t(range.size()) * in);
     Buffer<float> scratch;
     for (int i = range.begin; i < range.end; ++i) {
       lanes_.observe(lanes[i], observations + i * world_.observation_size());
       pair[i - range.begin] = lanes_.pair(lanes[i]);
     }
-    model_.policy->infer(thread, range.size(), observations + range.begin * world_.observation_size(), pair, logits + size_t(range.begin) * actions,
+    model_.policy->infer(thread, range.size(), observations + range.begin * world_.observation_size(), pair.data(), logits + size_t(range.begin) * actions,
                          psi + size_t(range.begin) * d);
     for (int i = range.begin; i < range.end; ++i) {
       const EnvTask at = lanes_.pairs()[lanes_.pair(lanes[i])];
@@ -207,7 +196,7 @@ void Ppo::collect() {
   value_->prepare_inference(value_parameters_.data());
 
   const int actions = world_.actions();
-  std::vector<double> p(actions), log_p(actions);
+  std::vector<double> p(actions);
   std::vector<int> all(lanes);
   std::iota(all.begin(), all.end(), 0);
   std::vector<float> logits(size_t(lanes) * actions), psi(size_t(lanes) * d);
@@ -219,12 +208,13 @@ void Ppo::collect() {
     for (int lane = 0; lane < lanes; ++lane) {
       const size_t at = first + lane;
       const EnvTask pair = lanes_.pairs()[lanes_.pair(lane)];
-      softmax(logits.data() + size_t(lane) * actions, actions, p.data(), log_p.data());
-      const int action = draw_action(p.data(), actions, Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
+      const float* scores = logits.data() + size_t(lane) * actions;
+      const double log_sum = softmax(scores, actions, 1, p.data());
+      const int action = draw(p.data(), actions, Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
       r.env[at] = pair.env;
       r.task[at] = pair.task;
       r.action[at] = action;
-      r.log_probability[at] = float(log_p[action]);
+      r.log_probability[at] = float(scores[action] - log_sum);
       const WorldStep step = lanes_.step(lane, action);
       r.reward[at] = float(step.reward_cents) / 100;
       if (step.terminated) lanes_.restart(lane);
@@ -261,16 +251,10 @@ void Ppo::collect() {
 
 void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
   const int n = int(rows.size()), actions = world_.actions();
-  std::vector<uint8_t> observations(n * world_.observation_size());
-  std::vector<int> env(n), task(n), action(n);
-  std::vector<float> reward(n), logits(size_t(n) * actions);
-  for (int i = 0; i < n; ++i) {
-    std::copy_n(rollout_.observations.data() + rows[i] * world_.observation_size(), world_.observation_size(), observations.data() + i * world_.observation_size());
-    env[i] = rollout_.env[rows[i]];
-    task[i] = rollout_.task[rows[i]];
-    action[i] = rollout_.action[rows[i]];
-    reward[i] = rollout_.reward[rows[i]];
-  }
+  const std::vector<uint8_t> observations = gathered(rollout_.observations, rows, world_.observation_size());
+  const std::vector<int> env = gathered(rollout_.env, rows), task = gathered(rollout_.task, rows), action = gathered(rollout_.action, rows);
+  const std::vector<float> reward = gathered(rollout_.reward, rows);
+  std::vector<float> logits(size_t(n) * actions);
   RolloutObjective objective(*this, rows);
   StepBatch<float> batch = {n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
   batch.frozen_statistics = true;
@@ -281,14 +265,12 @@ void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
   const size_t count = model_.policy->parameters().total(), value_count = value_layout_.total();
   const double length = std::sqrt(sum_of_squares(parallel_, count, gradient_.data()) + sum_of_squares(parallel_, value_count, value_gradient_.data()));
   const float factor = float(clip_factor(length, options_.gradient_norm));
-  scale(parallel_, count, factor, gradient_.data());
-  scale(parallel_, value_count, factor, value_gradient_.data());
   // While the value alone learns, the policy's mean squares are gathered, but it does not move: they start at zero, and the first steps would be
   // ten times as long as those that follow.
   RmsPropOptions policy_steps = options_.optimiser;
   if (value_alone) policy_steps.learning_rate = 0;
-  rmsprop_step(parallel_, policy_steps, count, gradient_.data(), model_.parameters.data(), v_.data());
-  rmsprop_step(parallel_, options_.optimiser, value_count, value_gradient_.data(), value_parameters_.data(), value_v_.data());
+  rmsprop_step(parallel_, policy_steps, count, factor, gradient_.data(), model_.parameters.data(), v_.data());
+  rmsprop_step(parallel_, options_.optimiser, value_count, factor, value_gradient_.data(), value_parameters_.data(), value_v_.data());
   last_ = objective.result;
 }
 

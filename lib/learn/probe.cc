@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "nn/softmax.h"
 #include "world/view.h"
 
 namespace synpo {
@@ -10,11 +11,14 @@ namespace {
 
 // What the policy would do, as it acts by itself: by chance, or, where scores are values, the best action.
 ActionRates rates_of(const float* scores, bool values) {
-  const double top = *std::max_element(scores, scores + kGridActions);
-  ActionRates rates;
-  double sum = 0;
-  for (int a = 0; a < kGridActions; ++a) sum += rates[a] = values ? double(scores[a] == top) : std::exp(scores[a] - top);
-  for (double& rate : rates) rate /= sum;
+  ActionRates rates = {};
+  if (!values) {
+    softmax(scores, kGridActions, 1, rates.data());
+    return rates;
+  }
+  const float top = *std::max_element(scores, scores + kGridActions);
+  const auto best = std::count(scores, scores + kGridActions, top);
+  for (int a = 0; a < kGridActions; ++a) rates[a] = scores[a] == top ? 1.0 / double(best) : 0;
   return rates;
 }
 

@@ -40,7 +40,7 @@ const Hyper kHypers[] = {
     {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
     {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
-    {"roll-limit", &O::roll_limit, 1, 300, true, "steps after which a running episode is given up"},
+    {"roll-limit", &O::roll_limit, 1, kStepLimit, true, "steps after which a running episode is given up"},
     {"lr", &O::learning_rate, 0, 1, false, "learning rate of Adam", "The optimiser"},
     {"cosine", &O::cosine, 0, 1, true, "1: the learning rate falls by half a cosine to the run's end; 0: constant"},
     {"lr-final", &O::final_rate, 0, 1, false, "learning rate at the cosine's end"},

@@ -17,7 +17,7 @@ struct ImitationOptions {
   double memory = 20000;        // trajectories kept
   double read = 1;              // trajectories read before an update
   double fill = 1;              // trajectories read before the first update
-  double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = 300;
+  double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = kStepLimit;
   double balance_final = 0;     // what balance moves to, in a straight line, by the run's end; 0: it stays
   // The optimiser.
   double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0.001;

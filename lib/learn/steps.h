@@ -42,7 +42,7 @@ struct RunningOptions {
   double roll_in = 0;       // probability of the learner's own greedy move behind a taken step
   double noise = 0;         // probability of a random move otherwise
   bool fresh_starts = false;  // agent and things are placed anew; the memory then gives the pair alone
-  int step_limit = 300;
+  int step_limit = kStepLimit;
 };
 
 class RunningDraw {

@@ -15,7 +15,7 @@ std::optional<Episode> TrajectoryStream::next() {
     return std::nullopt;
   }
   try {
-    const Trajectory trajectory = parse_trajectory(line_, kMostActions, world_.step_limit());
+    const Trajectory trajectory = parse_trajectory(line_, kStepLimit);
     Episode episode = replay(world_, trajectory);
     if (!allowed_[world_.pair_number(episode.pair)])
       fail(Exit::kData, "pair ", trajectory.env, ", ", trajectory.task, " is not in the seen set");

@@ -1,39 +1,38 @@
 #include "nn/rmsprop.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
+
+#include "kernel/kernels.h"
 
 namespace synpo {
 namespace {
 
 constexpr size_t kPart = 1 << 16;  // values of a shard
 
+// Calls body(shard, first, count) for every part.
 template <class Body>
 void for_parts(Parallel& parallel, size_t count, Body&& body) {
-  parallel.run(int((count + kPart - 1) / kPart), [&](int shard, int) { body(shard, shard * kPart, std::min(count, (shard + 1) * kPart)); });
+  parallel.run(int((count + kPart - 1) / kPart), [&](int shard, int) { body(shard, shard * kPart, std::min(count - shard * kPart, kPart)); });
 }
 
 }  // namespace
 
 template <class T>
-void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, const T* gradient, T* parameter, T* v) {
-  const T rate = T(options.learning_rate), smoothing = T(options.smoothing), epsilon = T(options.epsilon), decay = T(options.weight_decay);
-  for_parts(parallel, count, [&](int, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) {
-      const T g = gradient[i] + decay * parameter[i];
-      v[i] = smoothing * v[i] + (1 - smoothing) * g * g;
-      parameter[i] -= rate * g / (std::sqrt(v[i]) + epsilon);
-    }
-  });
+void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, T factor, const T* gradient, T* parameter, T* v) {
+  RmsPropFactors<T> factors;
+  factors.scale = factor;
+  factors.decay = T(options.weight_decay);
+  factors.smoothing = T(options.smoothing);
+  factors.rate = T(options.learning_rate);
+  factors.epsilon = T(options.epsilon);
+  for_parts(parallel, count, [&](int, size_t first, size_t size) { kernels<T>().rmsprop(size, factors, gradient + first, parameter + first, v + first); });
 }
 
 template <class T>
 double sum_of_squares(Parallel& parallel, size_t count, const T* values) {
-  std::vector<double> parts((count + kPart - 1) / kPart, 0);
-  for_parts(parallel, count, [&](int shard, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) parts[shard] += double(values[i]) * values[i];
-  });
+  std::vector<double> parts((count + kPart - 1) / kPart);
+  for_parts(parallel, count, [&](int shard, size_t first, size_t size) { parts[shard] = kernels<T>().sum_of_squares(size, values + first); });
   double sum = 0;
   for (const double part : parts) sum += part;
   return sum;
@@ -41,19 +40,9 @@ double sum_of_squares(Parallel& parallel, size_t count, const T* values) {
 
 double clip_factor(double length, double limit) { return length > limit ? limit / length : 1; }
 
-template <class T>
-void scale(Parallel& parallel, size_t count, T factor, T* values) {
-  for_parts(parallel, count, [&](int, size_t begin, size_t end) {
-    for (size_t i = begin; i < end; ++i) values[i] *= factor;
-  });
-}
-
-#define SYNPO_INSTANTIATE(T)                                                                          \
-  template void rmsprop_step(Parallel&, const RmsPropOptions&, size_t, const T*, T*, T*);             \
-  template double sum_of_squares(Parallel&, size_t, const T*);                                        \
-  template void scale(Parallel&, size_t, T, T*);
-SYNPO_INSTANTIATE(float)
-SYNPO_INSTANTIATE(double)
-#undef SYNPO_INSTANTIATE
+template void rmsprop_step(Parallel&, const RmsPropOptions&, size_t, float, const float*, float*, float*);
+template void rmsprop_step(Parallel&, const RmsPropOptions&, size_t, double, const double*, double*, double*);
+template double sum_of_squares(Parallel&, size_t, const float*);
+template double sum_of_squares(Parallel&, size_t, const double*);
 
 }  // namespace synpo

@@ -10,9 +10,9 @@ struct RmsPropOptions {
   double learning_rate = 2.5e-5, smoothing = 0.99, epsilon = 1e-8, weight_decay = 1e-4;
 };
 
-// One step: g = gradient + weight_decay * parameter, v = smoothing * v + (1 - smoothing) * g^2, parameter -= learning_rate * g / (sqrt(v) + epsilon).
+// One step: g = factor * gradient + weight_decay * parameter, v = smoothing * v + (1 - smoothing) * g^2, parameter -= learning_rate * g / (sqrt(v) + epsilon).
 template <class T>
-void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, const T* gradient, T* parameter, T* v);
+void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, T factor, const T* gradient, T* parameter, T* v);
 
 // Sum of squares, in double; the same for every number of threads.
 template <class T>
@@ -20,8 +20,5 @@ double sum_of_squares(Parallel& parallel, size_t count, const T* values);
 
 // What a gradient of this length is multiplied with, so that it is no longer than `limit`.
 double clip_factor(double length, double limit);
-
-template <class T>
-void scale(Parallel& parallel, size_t count, T factor, T* values);
 
 }  // namespace synpo

@@ -124,7 +124,7 @@ WorldState GridSet::start_state(int env, const StartPlaces& places) const {
 bool GridSet::valid(EnvTask pair, const WorldState& state) const {
   const GridState grid = to_grid_state(state);
   const Maze& maze = mazes_[pair.env];
-  if (grid.picked > 1 || grid.steps >= kGridStepLimit || maze.wall[grid.now.agent] || to_world_state(grid) != state) return false;
+  if (grid.picked > 1 || grid.steps >= kStepLimit || maze.wall[grid.now.agent] || to_world_state(grid) != state) return false;
   for (int i = 0; i < kTreasures; ++i) {
     const bool gone = grid.picked == 1 && i == task(pair).first;
     if (gone != (grid.now.treasures[i] == kPicked) || (!gone && maze.wall[grid.now.treasures[i]])) return false;

@@ -29,7 +29,6 @@ class GridSet : public World {
 
   const std::string& name() const override;
   int rules() const override { return kGridRules; }
-  int step_limit() const override { return kGridStepLimit; }
   const std::vector<Environment>& environments() const override { return environments_; }
   const std::vector<std::string>& task_names() const override;
   const std::vector<std::string>& action_names() const override;

@@ -52,7 +52,7 @@ WorldStep grid_step(const Maze& maze, const Task& task, GridState& state, int ac
     else
       state.now.agent = target;
   }
-  step.truncated = !step.terminated && state.steps >= kGridStepLimit;
+  step.truncated = !step.terminated && state.steps >= kStepLimit;
   return step;
 }
 

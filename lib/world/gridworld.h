@@ -19,7 +19,6 @@ namespace synpo {
 
 constexpr int kGridActions = 5;
 constexpr int kGridRules = 1;       // version of the rules above; trajectories and checkpoints carry it
-constexpr int kGridStepLimit = 300;
 constexpr uint8_t kPicked = 255;    // in place of the cell of a treasure that is no longer there
 
 enum GridAction : uint8_t { kUp, kDown, kLeft, kRight, kPick };

@@ -115,7 +115,7 @@ WorldStep kitchen_step(const KitchenTables& tables, KitchenTask task, KitchenSta
       }
     }
   }
-  step.truncated = !step.terminated && state.steps >= kKitchenStepLimit;
+  step.truncated = !step.terminated && state.steps >= kStepLimit;
   return step;
 }
 
@@ -145,7 +145,7 @@ std::vector<bool> kitchen_reachable(const KitchenTables& tables, const std::arra
 
 bool kitchen_valid(const KitchenTables& tables, KitchenTask task, const WorldState& world) {
   const KitchenState state = unpack(world);
-  if (pack(state) != world || state.pose >= tables.poses.size() || state.doors >= kDoorStates || state.steps >= kKitchenStepLimit) return false;
+  if (pack(state) != world || state.pose >= tables.poses.size() || state.doors >= kDoorStates || state.steps >= kStepLimit) return false;
   if (state.hand != kEmptyHand && state.hand != task.object) return false;
   for (size_t i = 0; i < kKitchenObjects; ++i) {
     const uint8_t slot = state.slots[i];

@@ -19,7 +19,6 @@
 namespace synpo {
 
 constexpr int kKitchenRules = 1;  // version of the rules above; trajectories and checkpoints carry it
-constexpr int kKitchenStepLimit = 300;
 constexpr int kKitchenActions = 7;
 extern const char* const kKitchenActionNames[kKitchenActions];
 enum KitchenAction : uint8_t { kMoveAhead, kRotateLeft, kRotateRight, kLookUp, kLookDown, kOpenClose, kPickupPut };

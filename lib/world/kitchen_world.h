@@ -15,7 +15,6 @@ class KitchenWorld : public World {
  public:
   const std::string& name() const override;
   int rules() const override { return kKitchenRules; }
-  int step_limit() const override { return kKitchenStepLimit; }
   const std::vector<Environment>& environments() const override { return environments_; }
   const std::vector<std::string>& task_names() const override;
   const std::vector<std::string>& action_names() const override;

@@ -32,6 +32,8 @@ struct WorldStep {
   bool ended() const { return terminated || truncated; }
 };
 
+constexpr int kStepLimit = 300;  // of an episode, in every world: then it is cut
+
 constexpr int kHistory = 4;  // states whose observations the network is given
 
 // The last states of a running episode, newest last. Before the first step the earlier ones are missing.
@@ -73,7 +75,6 @@ class World {
 
   virtual const std::string& name() const = 0;  // as the files have it: "gridworld"
   virtual int rules() const = 0;                // version of the rules, which trajectories and checkpoints carry
-  virtual int step_limit() const = 0;
   virtual const std::vector<Environment>& environments() const = 0;
   virtual const std::vector<std::string>& task_names() const = 0;
   // The first moves() of the actions only move the agent.

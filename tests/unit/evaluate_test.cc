@@ -84,13 +84,13 @@ PairResult played(FunctionPolicy::Scores scores, const EvalEpisode& episode, con
     ++result.length;
     result.successes = step.success;
     result.wrong = step.wrong;
-    result.timeouts = !step.terminated && (step.truncated || result.length == options.step_limit);
-    if (step.ended() || result.length == options.step_limit) return result;
+    result.timeouts = !step.terminated && step.truncated;
+    if (step.ended()) return result;
   }
 }
 
 TEST(Evaluate, AgreesWithEpisodesPlayedOneByOne) {
-  for (const EvalOptions& options : {EvalOptions{1, 1, kGridStepLimit}, EvalOptions{2, 0, 40}}) {
+  for (const EvalOptions& options : {EvalOptions{1, 1}, EvalOptions{2, 0}}) {
     const std::vector<EvalEpisode> episodes = episodes_of(10, 60);
     std::vector<PairResult> want(kPairs.size());
     for (const EvalEpisode& episode : episodes) want[episode.pair].add(played(hashed, episode, options));
@@ -126,11 +126,11 @@ TEST(Evaluate, ActionsAreDrawnWithTheProbabilitiesOfThePolicy) {
       for (const uint8_t action : trajectory.actions) ++count[action], ++steps;
     });
     for (double& c : count) c /= steps;
-    EXPECT_EQ(steps, 40 * 3 * kGridStepLimit);  // without picks every episode runs out of time
+    EXPECT_EQ(steps, 40 * 3 * kStepLimit);  // without picks every episode runs out of time
     return count;
   };
   const auto near = [](const std::vector<double>& got, const std::vector<double>& want) {
-    for (int a = 0; a < kGridActions; ++a) EXPECT_NEAR(got[a], want[a], 4 * std::sqrt(0.25 / (40 * 3 * kGridStepLimit))) << "action " << a;
+    for (int a = 0; a < kGridActions; ++a) EXPECT_NEAR(got[a], want[a], 4 * std::sqrt(0.25 / (40 * 3 * kStepLimit))) << "action " << a;
   };
   near(counts(1), {0.4, 0.3, 0.2, 0.1, 0});
   near(counts(0.5), {16 / 30.0, 9 / 30.0, 4 / 30.0, 1 / 30.0, 0});  // squares
@@ -162,7 +162,7 @@ TEST(Evaluate, DependsNeitherOnThreadsNorOnOrderNorOnOtherEpisodes) {
     EXPECT_TRUE(same(other_order[p], all[p]));
     EXPECT_TRUE(same(parts[p], all[p]));
   }
-  EXPECT_FALSE(same(run(hashed, episodes, 1, {2, 1, kGridStepLimit})[0], all[0]));
+  EXPECT_FALSE(same(run(hashed, episodes, 1, {2, 1})[0], all[0]));
 }
 
 TEST(Evaluate, ALearnerThatRunsIntoTheWallTimesOut) {
@@ -177,9 +177,9 @@ TEST(Evaluate, ALearnerThatRunsIntoTheWallTimesOut) {
       cell -= kGridSide;
       ++way;
     }
-    reward[episode.pair] += -way - 2 * (kGridStepLimit - way);
+    reward[episode.pair] += -way - 2 * (kStepLimit - way);
   }
-  for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_TRUE(same(got[p], {50, 0, 0, 50, reward[p], 50 * kGridStepLimit})) << p;
+  for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_TRUE(same(got[p], {50, 0, 0, 50, reward[p], 50 * kStepLimit})) << p;
 }
 
 TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
@@ -195,7 +195,7 @@ TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
     if (found >= 0 && !first)
       want[episode.pair].add({1, 0, 1, 0, -1001, 1});
     else
-      want[episode.pair].add({1, 0, 0, 1, first ? 100 - 300 : -300, kGridStepLimit});
+      want[episode.pair].add({1, 0, 0, 1, first ? 100 - 300 : -300, kStepLimit});
   }
   for (size_t p = 0; p < kPairs.size(); ++p) {
     EXPECT_TRUE(same(got[p], want[p])) << p;
@@ -213,7 +213,7 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
     size_t done = 0;
     PairResult sum, recorded;
     for (const PairResult& result : evaluate(
-             parallel, policy, builtin_world(), kPairs, episodes, {3, 1, kGridStepLimit},
+             parallel, policy, builtin_world(), kPairs, episodes, {3, 1},
              [&](const Trajectory& t) {
                const EvalEpisode& episode = episodes[lines[threads - 1].size()];
                lines[threads - 1].push_back(format_trajectory(t));

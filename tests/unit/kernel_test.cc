@@ -82,6 +82,7 @@ TEST(Gemm, SizesAroundMultiplesOfVectors) {
     for (const int off : {-1, 0, 1}) {
       check_gemms<float>(near + off, 33, 17, 0, 1);
       check_gemms<float>(12, near + off, 31, 0, 2);
+      check_gemms<float>(near + off, 64, 290, 0, 4);
       check_gemms<float>(25, 32, near + off, 3, 3);
     }
   for (const auto& [m, n, k] : {std::tuple(1, 1, 1), std::tuple(1, 70, 70), std::tuple(70, 1, 70), std::tuple(70, 70, 1), std::tuple(1, 1, 300)})
@@ -252,6 +253,26 @@ TYPED_TEST(Rows, AreTheirDefinitions) {
       const std::vector<double>* rest[6] = {&sum, &squares, &dsum, &products, &msum, &mproducts};
       for (int q = 0; q < 6; ++q)
         for (int c = 0; c < channels; ++c) ASSERT_NEAR((*rest[q])[c], q + 1, kRows * near) << q << ", " << c;
+    }
+}
+
+TYPED_TEST(Rows, RmsPropAndSumsOfSquaresAreTheirDefinitions) {
+  using T = TypeParam;
+  const double near = std::is_same_v<T, float> ? 1e-5 : 1e-13;
+  for (const NamedKernels<T>& target : all_kernels<T>())
+    for (const size_t n : {size_t(0), size_t(1), size_t(31), size_t(32), size_t(1003)}) {
+      SCOPED_TRACE(testing::Message() << target.name << ", " << n << " values");
+      const std::vector<T> gradient = random_values<T>(n, 1), start = random_values<T>(n, 2);
+      std::vector<T> parameter = start, v(n, T(0.25));
+      target.kernels->rmsprop(n, {T(0.5), T(0.125), T(0.75), T(0.1), T(0.5)}, gradient.data(), parameter.data(), v.data());
+      double squares = 0;
+      for (size_t i = 0; i < n; ++i) {
+        const double g = 0.5 * gradient[i] + 0.125 * start[i], mean = 0.75 * 0.25 + 0.25 * g * g;
+        ASSERT_NEAR(v[i], mean, near);
+        ASSERT_NEAR(parameter[i], start[i] - 0.1 * g / (std::sqrt(mean) + 0.5), near);
+        squares += double(gradient[i]) * gradient[i];
+      }
+      EXPECT_NEAR(target.kernels->sum_of_squares(n, gradient.data()), squares, 1e-12 * double(n + 1));
     }
 }
 

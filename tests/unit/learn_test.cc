@@ -81,7 +81,7 @@ TEST(Replay, ComesBackThroughTheFile) {
   for (int i = 0; i < 100; ++i) {
     const EnvTask pair = {i % world.envs(), i % world.task_count()};
     const Trajectory t = expert_episode(world, pair, 2, i, i % 2 * 0.5, 1);
-    const Episode episode = replay(world, parse_trajectory(line_of(t), kGridActions, kGridStepLimit));
+    const Episode episode = replay(world, parse_trajectory(line_of(t), kStepLimit));
     EXPECT_EQ(episode.pair, pair);
     EXPECT_EQ(episode.start, episode_start(world, pair, 2, Purpose::kEpisodeStart, i));
     EXPECT_EQ(episode.actions, t.actions);
@@ -92,13 +92,13 @@ TEST(Replay, ComesBackThroughTheFile) {
 TEST(Replay, TruncatedEpisodesToo) {
   const GridSet& world = builtin_world();
   Trajectory t = expert_episode(world, {0, 0}, 1, 0, 0, 1);
-  t.actions.assign(kGridStepLimit, kPick);
+  t.actions.assign(kStepLimit, kPick);
   t.start["agent"] = {1, 1};
   if (std::count_if(t.start.begin(), t.start.end(), [](const auto& entry) { return entry.second == std::pair{1, 1}; }) > 1) FAIL() << "a treasure lies there";
-  t.reward_cents.assign(kGridStepLimit, -1);
+  t.reward_cents.assign(kStepLimit, -1);
   t.terminated = t.success = false;
   t.truncated = true;
-  EXPECT_EQ(replay(world, t).actions.size(), size_t(kGridStepLimit));
+  EXPECT_EQ(replay(world, t).actions.size(), size_t(kStepLimit));
   t.truncated = false;
   EXPECT_EQ(thrown([&] { replay(world, t); }), "65 replay and file differ in success, terminated or truncated");
 }

@@ -42,10 +42,10 @@ TEST(Gae, WithLambdaOneTheReturnIsTheDiscountedSum) {
 
 TEST(RmsProp, IsTheHandComputedStep) {
   Parallel parallel(1);
-  const double gradient[] = {3, -1};
+  const double gradient[] = {6, -2};
   double parameter[] = {2, 0.5}, v[] = {0, 4};
-  rmsprop_step(parallel, {0.1, 0.75, 0.5, 0.5}, 2, gradient, parameter, v);
-  // g = 3 + 0.5 * 2 = 4, v = 0.25 * 16 = 4; g = -1 + 0.25 = -0.75, v = 0.75 * 4 + 0.25 * 0.5625 = 3.140625.
+  rmsprop_step(parallel, {0.1, 0.75, 0.5, 0.5}, 2, 0.5, gradient, parameter, v);
+  // g = 0.5 * 6 + 0.5 * 2 = 4, v = 0.25 * 16 = 4; g = -1 + 0.25 = -0.75, v = 0.75 * 4 + 0.25 * 0.5625 = 3.140625.
   EXPECT_DOUBLE_EQ(v[0], 4);
   EXPECT_DOUBLE_EQ(parameter[0], 2 - 0.1 * 4 / 2.5);
   EXPECT_DOUBLE_EQ(v[1], 3.140625);

@@ -228,7 +228,7 @@ class Followers {
 
 TEST(RunningDraw, WithoutNoiseFollowsTheTrajectoriesStepByStep) {
   const ReplayMemory memory = memory_of(9, 0.3);
-  const RunningOptions options = {6, 1, 0, 0, false, kGridStepLimit};
+  const RunningOptions options = {6, 1, 0, 0, false, kStepLimit};
   RunningDraw running(builtin_world(), options, 1);
   Followers followers(memory, options, 1);
   Parallel parallel(2);
@@ -248,7 +248,7 @@ TEST(RunningDraw, WithoutNoiseFollowsTheTrajectoriesStepByStep) {
 TEST(RunningDraw, TakesTurns) {
   // Fewer samples than running episodes: each is visited in turn.
   const ReplayMemory memory = memory_of(9, 0.3);
-  const RunningOptions options = {10, 1, 0, 0, false, kGridStepLimit};
+  const RunningOptions options = {10, 1, 0, 0, false, kStepLimit};
   RunningDraw running(builtin_world(), options, 1);
   Followers followers(memory, options, 0);
   Parallel parallel(1);
@@ -293,7 +293,7 @@ TEST(RunningDraw, OffTheTrajectoryThePlannerGivesTheLabels) {
 
 TEST(RunningDraw, NoiseAndTheLearnersMovesAreAsOftenAsAsked) {
   const ReplayMemory memory = memory_of(30, 0);
-  const RunningOptions options = {64, 1, 0.5, 0.4, false, kGridStepLimit};
+  const RunningOptions options = {64, 1, 0.5, 0.4, false, kStepLimit};
   RunningDraw running(builtin_world(), options, 1);
   Followers followers(memory, options, 1);
   Parallel parallel(1);
@@ -326,7 +326,7 @@ TEST(RunningDraw, NoiseAndTheLearnersMovesAreAsOftenAsAsked) {
 
 TEST(RunningDraw, KnowsTheStepBehindAndThePlannersValues) {
   const ReplayMemory memory = memory_of(9, 0.3);
-  const RunningOptions options = {6, 1, 0.3, 0.2, false, kGridStepLimit};
+  const RunningOptions options = {6, 1, 0.3, 0.2, false, kStepLimit};
   RunningDraw running(builtin_world(), options, 1);
   Followers followers(memory, options, 1);
   Parallel parallel(2);
@@ -381,7 +381,7 @@ TEST(RunningDraw, ATrajectoryMayBreakOff) {
   episode.actions.resize(5);
   episode.labels.resize(5);
   memory.add(episode);
-  const RunningOptions options = {3, 1, 0, 0, false, kGridStepLimit};
+  const RunningOptions options = {3, 1, 0, 0, false, kStepLimit};
   RunningDraw running(builtin_world(), options, 1);
   Parallel parallel(1);
   Minibatch batch;
@@ -398,7 +398,7 @@ TEST(RunningDraw, ATrajectoryMayBreakOff) {
 
 TEST(RunningDraw, StepsOnTreasuresAreAlwaysTakenOthersByBalance) {
   const ReplayMemory memory = memory_of(9, 0.3);
-  RunningDraw running(builtin_world(), {8, 0.25, 0, 0, false, kGridStepLimit}, 1);
+  RunningDraw running(builtin_world(), {8, 0.25, 0, 0, false, kStepLimit}, 1);
   Parallel parallel(1);
   Minibatch batch;
   int taken_elsewhere = 0, passed_elsewhere = 0;

@@ -87,8 +87,7 @@ void expect_rmsprop(const SafeTensors& dump, const RmsPropOptions& options, doub
     std::vector<T> gradient = as<T>({gradients.begin() + at, gradients.begin() + at + count});
     const double factor = clip_factor(std::sqrt(sum_of_squares(parallel, count, gradient.data())), longest);
     clipped += factor < 1;
-    scale(parallel, count, T(factor), gradient.data());
-    rmsprop_step(parallel, options, count, gradient.data(), parameter.data(), v.data());
+    rmsprop_step(parallel, options, count, T(factor), gradient.data(), parameter.data(), v.data());
     std::vector<double> gone(count), way(count);
     for (size_t i = 0; i < count; ++i) {
       gone[i] = double(parameter[i]) - start[i];

@@ -27,7 +27,7 @@ Trajectory short_trajectory() {
   return t;
 }
 
-Trajectory parsed(const std::string& line) { return parse_trajectory(line, 5, 300); }
+Trajectory parsed(const std::string& line) { return parse_trajectory(line, 300); }
 
 void expect_equal(const Trajectory& a, const Trajectory& b) {
   EXPECT_EQ(a.world, b.world);
@@ -146,14 +146,13 @@ std::string array_of(size_t size, const std::string& value) {
 }
 
 TEST(Trajectory, ActionsAndRewardsAreHeldToTheirBounds) {
-  EXPECT_EQ(refused(with("actions", "[0,5,1]")), "65 field 'actions': found '5', expected a whole number from 0 to 4");
-  EXPECT_EQ(refused(with("actions", "[0,-1,1]")), "65 field 'actions': found '-1', expected a whole number from 0 to 4");
-  EXPECT_EQ(refused(with("actions", "[0,260,1]")), "65 field 'actions': found '260', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused(with("actions", "[0,256,1]")), "65 field 'actions': found '256', expected a whole number from 0 to 255");
+  EXPECT_EQ(refused(with("actions", "[0,-1,1]")), "65 field 'actions': found '-1', expected a whole number from 0 to 255");
   EXPECT_EQ(refused(with("actions", "[]")), "65 field 'actions': found '[]', expected an array of 1 to 300 actions");
   EXPECT_TRUE(refused(with("actions", array_of(301, "0"))).ends_with("expected an array of 1 to 300 actions"));
   EXPECT_EQ(refused(with("actions", "{\"0\":1}")), "65 field 'actions': found '{\"0\":1}', expected an array of 1 to 300 actions");
   EXPECT_EQ(refused(with("labels", "[0,1]")), "65 found 2 labels for 3 actions");
-  EXPECT_EQ(refused(with("labels", "[0,1,9]")), "65 field 'labels': found '9', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused(with("labels", "[0,1,999]")), "65 field 'labels': found '999', expected a whole number from 0 to 255");
   EXPECT_EQ(refused(with("rewards", "[-0.01]")), "65 field 'rewards': found '[-0.01]', expected an array of 3 rewards");
   EXPECT_EQ(refused(with("rewards", "[0,0,0.005]")), "65 field 'rewards': found '0.005', expected a multiple of 0.01");
   EXPECT_EQ(refused(with("rewards", "[0,0,1e300]")), "65 field 'rewards': found '1e+300', expected a multiple of 0.01");

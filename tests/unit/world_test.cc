@@ -93,7 +93,7 @@ TEST(GridWorld, AnyOtherTreasureEndsTheEpisode) {
 TEST(GridWorld, IsCutAfter300Steps) {
   const Maze maze = open_maze();
   GridState state = start_at(cell(1, 1));
-  for (int i = 1; i < kGridStepLimit; ++i) ASSERT_FALSE(grid_step(maze, kRedBlue, state, kUp).ended());
+  for (int i = 1; i < kStepLimit; ++i) ASSERT_FALSE(grid_step(maze, kRedBlue, state, kUp).ended());
   GridState other = state;
   const WorldStep cut = grid_step(maze, kRedBlue, state, kUp);
   EXPECT_TRUE(cut.truncated);
