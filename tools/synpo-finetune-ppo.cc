@@ -51,7 +51,8 @@ int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
       const double n = double(r.finished.episodes);  // 0 / 0: nothing ended
       const double rate = double(run.steps() - reported_steps) / seconds_since(reported);
       RunLogRow::Evaluation e{NAN, NAN, NAN, NAN};
-      if (evaluates) e = evaluate_sample(parallel, world, run.model(), run.model().parameters.data(), run.model().statistics.data(), int(s.evaluate_episodes));
+      const Model& model = run.model();
+      if (evaluates) e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(), int(s.evaluate_episodes));
       log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n, r.finished.wrong / n,
                  r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value, r.entropy, r.kl, r.clip_fraction, r.explained_variance,
                  e.seen_success, e.seen_reward, e.unseen_success, e.unseen_reward});

@@ -22,9 +22,9 @@ int terminal_width(int fd);
 std::string ground_code(Rgb ground, TerminalColour colour);
 constexpr char kPlainCode[] = "\033[0m";
 
-// Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after the rate for each kind of pairs but the seen
-// ones. 100 and 0 stand there only where all or none succeeded. Where coloured cells are wider than `width` columns (0: any width is
-// well) they become smaller and lose their numbers. Ends with the means of the kinds.
+// Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after the rate for each
+// kind of pairs but the seen ones. 100 and 0 stand there only where all or none succeeded. Where coloured cells are wider than `width`
+// columns (0: any width is well) they become smaller and lose their numbers. Ends with the means of the kinds.
 std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width);
 
 // Mazes with their names, two columns a cell; walls are '#' without colour. A row has as many mazes as `width` columns hold (0: 80), at

@@ -54,7 +54,8 @@ Model widen(const Model& model, const World& from, const World& world, double em
   std::copy_n(model.statistics.data(), wide.policy->statistics().total(), wide.statistics.data());
   const TensorInfo &envs = table(*wide.policy, "embedding.env"), &tasks = table(*wide.policy, "embedding.task");
   for (const TensorInfo& tensor : after.tensors())
-    if (tensor.name != envs.name) std::copy_n(model.parameters.data() + before.find(tensor.name)->offset, tensor.size, wide.parameters.data() + tensor.offset);
+    if (tensor.name != envs.name)
+      std::copy_n(model.parameters.data() + before.find(tensor.name)->offset, tensor.size, wide.parameters.data() + tensor.offset);
   const int width = wide.shape.embedding;
   for (int env = 0; env < from.envs(); ++env)
     std::copy_n(model.parameters.data() + before.find(envs.name)->offset + size_t(env) * width, width,

@@ -69,7 +69,8 @@ Episode replay(const World& world, const Trajectory& t) {
     fail(Exit::kData, "env ", quoted(t.env), " is not the one of that name here (other maps? see -w)");
   for (const auto& [name, list] : {std::pair{"actions", &t.actions}, {"labels", &t.labels}})
     for (const uint8_t action : *list)
-      if (action >= world.actions()) fail(Exit::kData, "field '", name, "': found '", int(action), "', expected a whole number from 0 to ", world.actions() - 1);
+      if (action >= world.actions())
+        fail(Exit::kData, "field '", name, "': found '", int(action), "', expected a whole number from 0 to ", world.actions() - 1);
   Episode episode = {pair, world.start_state(pair.env, t.start), t.actions, t.labels.empty() ? t.actions : t.labels};
   WorldState state = episode.start;
   for (size_t i = 0; i < t.actions.size(); ++i) {

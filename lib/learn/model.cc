@@ -162,7 +162,8 @@ Model load_model(const Checkpoint& checkpoint, const World& world) {
   Model model;
   model.method = checkpoint.method;
   model.shape = parse_shape(checkpoint.shape);
-  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != world.actions() || model.shape.sight != world.sight())
+  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != world.actions() ||
+      model.shape.sight != world.sight())
     fail(Exit::kData, "the network's shape does not fit the world");
   if (!checkpoint.extractor.empty() && checkpoint.extractor != world.extractor())
     fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ", quoted(world.extractor()));

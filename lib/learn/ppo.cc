@@ -44,7 +44,8 @@ std::map<std::string, std::string> PpoOptions::describe() const {
 
 LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise) {
   LossWeights weights = otherwise;
-  for (const auto& [name, weight] : {std::pair<std::string, double*>{"reward-loss", &weights.reward}, {"env-loss", &weights.env}, {"task-loss", &weights.task}})
+  const std::pair<std::string, double*> named[] = {{"reward-loss", &weights.reward}, {"env-loss", &weights.env}, {"task-loss", &weights.task}};
+  for (const auto& [name, weight] : named)
     for (const std::string& key : {name, "ppo." + name}) {
       const auto found = from.options.find(key);
       if (found == from.options.end()) continue;
@@ -232,7 +233,8 @@ void Ppo::collect() {
   look(all, spare.data(), logits.data(), psi.data(), r.last_value.data());
   steps_ += size();
 
-  r.advantage = advantages({options_.rollout, lanes, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()}, options_.gae);
+  r.advantage =
+      advantages({options_.rollout, lanes, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()}, options_.gae);
   r.target.resize(size());
   double sum = 0, squares = 0, target_sum = 0, target_squares = 0;
   for (int i = 0; i < size(); ++i) {
@@ -331,8 +333,8 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   if (!file.has("train/ppo/position")) fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
   for (const auto& [name, value] : options_.describe()) {
     const auto found = checkpoint.options.find(name);
-    if (found == checkpoint.options.end() || found->second != value)
-      fail(Exit::kData, "the run in the checkpoint has another --", name.substr(4), ": ", found == checkpoint.options.end() ? "none" : found->second, ", not ", value);
+    const std::string had = found == checkpoint.options.end() ? "none" : found->second;
+    if (had != value) fail(Exit::kData, "the run in the checkpoint has another --", name.substr(4), ": ", had, ", not ", value);
   }
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());

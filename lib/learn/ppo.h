@@ -2,8 +2,9 @@
 //
 //   loss = the clipped objective's and the value's (clipped_objective.h) + the auxiliary losses of imitation, at the action taken
 //
-// Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the first minibatch behind a rollout has ratio 1. The value V is a perceptron over
-// [psi, e_env, e_task], whose gradient reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
+// Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the first minibatch
+// behind a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient reaches psi and not the embeddings;
+// for a method without one of these, one-hot in its place.
 #pragma once
 #include <memory>
 #include <string>

@@ -10,7 +10,8 @@ struct RmsPropOptions {
   double learning_rate = 2.5e-5, smoothing = 0.99, epsilon = 1e-8, weight_decay = 1e-4;
 };
 
-// One step: g = factor * gradient + weight_decay * parameter, v = smoothing * v + (1 - smoothing) * g^2, parameter -= learning_rate * g / (sqrt(v) + epsilon).
+// One step: g = factor * gradient + weight_decay * parameter, v = smoothing * v + (1 - smoothing) * g^2,
+// parameter -= learning_rate * g / (sqrt(v) + epsilon).
 template <class T>
 void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, T factor, const T* gradient, T* parameter, T* v);
 

@@ -43,7 +43,10 @@ void ModuleNet<T>::Modules::backward(Parallel& parallel, const T* dto, T* dfrom,
     const size_t begin = groups.begin[g];
     each[groups.keys[g]].backward(parallel, x.data() + begin * in, dys + begin * out, dxs + begin * in, false, parameters, gradient);
   }
-  for (size_t j = 0; j < groups.members.size(); ++j) std::transform(dxs + j * in, dxs + (j + 1) * in, dfrom + size_t(groups.members[j]) * in, dfrom + size_t(groups.members[j]) * in, std::plus<T>());
+  for (size_t j = 0; j < groups.members.size(); ++j) {
+    T* to = dfrom + size_t(groups.members[j]) * in;
+    std::transform(dxs + j * in, dxs + (j + 1) * in, to, to, std::plus<T>());
+  }
 }
 
 template <class T>
