@@ -1,0 +1,101 @@
+# scripts/reproduce with tools that only note how they were called: what is run, in which order, and what is not run again.
+load common
+
+# A copy of the scripts whose tools stand in for the real ones. A training fails once where a file `stop` names its run.
+stand_ins() {
+    mkdir build
+    cp -r "$ROOT/scripts" scripts
+    cat >build/synpo-train <<'END'
+#!/bin/bash
+echo "train $*" >>"$CALLS"
+cat >read
+out= save= log=
+while [ $# -gt 0 ]; do
+    case $1 in -o) out=$2 ;; --save) save=$2 ;; --log) log=$2 ;; esac
+    shift
+done
+if [ -f stop ] && [ "$out" = "$(cat stop).part" ]; then
+    rm stop
+    echo half >"$save"
+    exit 143
+fi
+echo ckpt >"$out"
+echo rows >"$log"
+END
+    cat >build/synpo-eval <<'END'
+#!/bin/bash
+echo "eval $*" >>"$CALLS"
+printf 'run\tmethod\tseen\nx\tsynpo\t1\n'
+END
+    cat >build/synpo-gen-expert <<'END'
+#!/bin/bash
+echo "expert $*" >>"$CALLS"
+echo "{}"
+END
+    cat >build/synpo-matrix <<'END'
+#!/bin/bash
+echo "matrix $*" >>"$CALLS"
+echo "what is printed"
+END
+    sed 's/matrix/render/' build/synpo-matrix >build/synpo-render
+    chmod +x build/*
+    export CALLS=$PWD/calls
+}
+
+trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
+
+@test "reproduce: every run once, the first seed first, for the budget's number of updates" {
+    stand_ins
+    scripts/reproduce figure3 --budget 1e6 --seeds 2 -n 7 -o results
+    trained >got
+    printf '%s\n' full-1 no-env-1 no-task-1 no-disentanglement-1 no-reward-1 full-2 no-env-2 no-task-2 no-disentanglement-2 no-reward-2 | cmp - got
+    [ "$(grep -c 'train.* -n 1953 ' calls)" = 10 ]
+    grep -q 'train .*-p pairs2.tsv -s 2 .*--no-env-loss --no-task-loss ' calls
+    [ "$(grep -c 'eval .* -n 7 ' calls)" = 10 ]
+    # Splits 2 and 3 are reported; 1 is the one that the recipe was found on.
+    grep -q '^matrix split .*-s 2' calls
+    grep -q '^matrix split .*-s 3' calls
+    [ "$(cut -f 2 results/no-env-2.tsv)" = $'method\nno-env' ]
+    grep -q '1953 updates of 512 states' results/README.md
+}
+
+@test "reproduce: what was stopped goes on, and what is there is not made again" {
+    stand_ins
+    mkdir results
+    echo no-task-1 >results/stop
+    ! scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results 2>err || complain "a training that failed was passed over"
+    [ ! -e results/README.md ]
+    rm calls
+    scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results
+    ! trained | grep -qx 'full-1\|no-env-1' || complain "trained again: $(trained)"
+    grep -q 'train .*--resume no-task-1.save' calls
+    [ ! -e results/no-task-1.save ]
+    rm calls
+    scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results
+    ! grep -q '^train\|^eval\|^expert' calls || complain "done again: $(cat calls)"
+}
+
+@test "reproduce: what the grid has chosen for a method is taken" {
+    stand_ins
+    mkdir -p results/grid
+    printf 'mlp\t--lr 0.5 --task-loss 0.25\t0.4\t-1\n' >results/grid/choice.tsv
+    scripts/reproduce table4 --budget 1e6 --seeds 1 -o results/table4
+    grep -q 'train .*-m mlp --lr 0.5 --task-loss 0.25 ' calls
+    [ "$(grep -c 'train .*--lr' calls)" = 1 ]
+}
+
+@test "reproduce: nonsense is wrong usage, and says what is right" {
+    stand_ins
+    for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" "table4 --budget 12" "table4 --budget some"; do
+        status=0
+        # shellcheck disable=SC2086
+        scripts/reproduce $words 2>err || status=$?
+        [ "$status" = 64 ] || complain "$words: exit code $status, expected 64: $(cat err)"
+        grep -q '^reproduce: .' err
+    done
+    [ ! -e calls ] || ! grep -q '^train' calls
+    rm build/synpo-train
+    status=0
+    PATH=/usr/bin:/bin scripts/reproduce table4 2>err || status=$?
+    [ "$status" = 69 ]
+}
