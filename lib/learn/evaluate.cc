@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <mutex>
 
 #include "learn/running_episode.h"
@@ -16,7 +17,7 @@ constexpr int kLanes = Policy<float>::kInferenceUnit;
 
 // One running episode.
 struct Lane {
-  size_t job;  // in the list of episodes
+  int job = 0;  // in the list of episodes
   Episode played;
   RunningEpisode running;
   std::vector<int> rewards;
@@ -46,47 +47,57 @@ void PairResult::add(const PairResult& other) {
 std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
                                  const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink,
                                  const std::function<void(size_t)>& progress) {
-  // Shards keep their lanes filled from a list of their own. Few long lists waste little at their ends.
-  const int total = int(episodes.size()), actions = world.actions();
-  const size_t observation = world.observation_size();
-  const int size = std::clamp(shard_count(total, 16), kLanes, 2048);
-  const int shards = shard_count(total, size);
-  std::vector<std::vector<PairResult>> results(shards);
-  std::vector<std::vector<Trajectory>> records(sink ? shards : 0);
-  std::mutex mutex;
-  size_t done = 0;
-  int next_to_write = 0;
-  std::vector<bool> finished(shards, false);
+  // Every thread keeps its lanes filled from one list, so that batches are small at its end alone.
+  const int total = int(episodes.size()), actions = world.actions(), threads = parallel.threads();
+  const size_t observation = world.observation_size(), most = size_t(std::clamp((total + threads - 1) / threads, 1, kLanes));
+  std::mutex mutex;  // of what follows
+  int next = 0, done = 0, written = 0;
+  std::map<int, Trajectory> waiting;  // for those before them
+  std::vector<PairResult> results(pairs.size());
+  const auto take = [&] {
+    std::lock_guard lock(mutex);
+    return next < total ? next++ : -1;
+  };
+  const auto finish = [&](const Lane& lane, const WorldStep& last) {
+    const EvalEpisode& job = episodes[size_t(lane.job)];
+    Trajectory trajectory;
+    if (sink) trajectory = to_trajectory(world, lane.played, lane.rewards, last, options.seed, job.number, options.window);
+    std::lock_guard lock(mutex);
+    results[size_t(job.pair)].add({1, last.success, last.wrong, last.truncated, lane.reward_cents, lane.running.now().steps});
+    ++done;
+    if (progress) progress(size_t(done));
+    if (!sink) return;
+    waiting.emplace(lane.job, std::move(trajectory));
+    for (; !waiting.empty() && waiting.begin()->first == written; ++written) sink(waiting.extract(waiting.begin()).mapped());
+  };
 
-  parallel.run(shards, [&](int shard, int thread) {
-    const Range range = shard_range(total, size, shard);
-    std::vector<PairResult>& result = results[shard];
-    result.resize(pairs.size());
-    std::vector<Trajectory> record(sink ? range.size() : 0);
-    std::vector<uint8_t> observations(kLanes * observation);
-    std::vector<float> logits(size_t(kLanes) * actions);
-    std::vector<int> pair_of(kLanes, 0);
+  parallel.run(threads, [&](int, int thread) {
+    std::vector<uint8_t> observations(most * observation);
+    std::vector<float> logits(most * size_t(actions));
+    std::vector<int> pair_of(most);
     std::vector<Lane> lanes;
-    size_t next = size_t(range.begin);
     const auto start = [&](Lane& lane) {
-      const EvalEpisode& job = episodes[next];
-      const EnvTask pair = pairs[job.pair];
-      lane = Lane{next++, {pair, episode_start(world, pair, options.seed, Purpose::kEvaluation, job.number), {}, {}}, {}, {}, 0};
+      const int number = take();
+      if (number < 0) return false;
+      const EvalEpisode& job = episodes[size_t(number)];
+      const EnvTask pair = pairs[size_t(job.pair)];
+      lane = {number, {pair, episode_start(world, pair, options.seed, Purpose::kEvaluation, job.number), {}, {}}, {}, {}, 0};
       lane.running.start(pair, lane.played.start);
+      return true;
     };
-    while (lanes.size() < kLanes && next < size_t(range.end)) start(lanes.emplace_back());
+    for (Lane lane; lanes.size() < most && start(lane);) lanes.push_back(lane);
     while (!lanes.empty()) {
       for (size_t i = 0; i < lanes.size(); ++i) {
         world.observe(lanes[i].running.pair.env, lanes[i].running.history, options.window, observations.data() + i * observation);
-        pair_of[i] = episodes[lanes[i].job].pair;
+        pair_of[i] = episodes[size_t(lanes[i].job)].pair;
       }
       policy.infer(thread, int(lanes.size()), observations.data(), pair_of.data(), logits.data());
       for (size_t i = 0; i < lanes.size();) {
         Lane& lane = lanes[i];
         const EnvTask pair = lane.running.pair;
         const int action = choose(logits.data() + i * actions, actions, options.temperature, [&] {
-          const EvalEpisode& job = episodes[lane.job];
-          return Random(options.seed, Purpose::kSample, world.pair_number(pair), uint64_t(job.number) << 16 | lane.running.now().steps).uniform();
+          const int64_t number = episodes[size_t(lane.job)].number;
+          return Random(options.seed, Purpose::kSample, world.pair_number(pair), uint64_t(number) << 16 | lane.running.now().steps).uniform();
         });
         if (sink) {
           lane.played.labels.push_back(uint8_t(world.expert(pair, lane.running.now())));
@@ -95,42 +106,21 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
         const WorldStep step = lane.running.step(world, action);
         lane.reward_cents += step.reward_cents;
         if (sink) lane.rewards.push_back(step.reward_cents);
-        if (!step.ended()) {
-          ++i;
-          continue;
+        if (step.ended()) {
+          finish(lane, step);
+          if (!start(lane)) {
+            // The last lane takes this one's place, and its scores: it has not moved yet.
+            std::copy_n(logits.data() + (lanes.size() - 1) * actions, actions, logits.data() + i * actions);
+            if (i + 1 < lanes.size()) lane = std::move(lanes.back());
+            lanes.pop_back();
+            continue;
+          }
         }
-        result[pair_of[i]].add({1, step.success, step.wrong, step.truncated, lane.reward_cents, lane.running.now().steps});
-        if (sink)
-          record[lane.job - range.begin] = to_trajectory(world, lane.played, lane.rewards, step, options.seed, episodes[lane.job].number, options.window);
-        if (progress) {
-          std::lock_guard lock(mutex);
-          progress(++done);
-        }
-        if (next < size_t(range.end)) {
-          start(lane);
-          ++i;
-        } else {
-          // The last lane takes this one's place, and its scores: it has not moved yet.
-          std::copy_n(logits.data() + (lanes.size() - 1) * actions, actions, logits.data() + i * actions);
-          pair_of[i] = pair_of[lanes.size() - 1];
-          if (i + 1 < lanes.size()) lane = std::move(lanes.back());
-          lanes.pop_back();
-        }
+        ++i;
       }
     }
-    if (!sink) return;
-    std::lock_guard lock(mutex);
-    records[shard] = std::move(record);
-    finished[shard] = true;
-    for (; next_to_write < shards && finished[next_to_write]; ++next_to_write) {
-      for (const Trajectory& trajectory : records[next_to_write]) sink(trajectory);
-      records[next_to_write] = {};
-    }
   });
-  std::vector<PairResult> sum(pairs.size());
-  for (const auto& result : results)
-    for (size_t p = 0; p < pairs.size(); ++p) sum[p].add(result[p]);
-  return sum;
+  return results;
 }
 
 RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,

@@ -27,7 +27,7 @@ struct EvalOptions {
   double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
 };
 
-// Called with the episodes of one shard, in order, when it has ended; shards come in order too.
+// Called with every episode in the order of the list, one at a time, from any thread.
 using EpisodeSink = std::function<void(const Trajectory&)>;
 
 // Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the order of
