@@ -65,10 +65,15 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
     std::lock_guard lock(mutex);
     results[size_t(job.pair)].add({1, last.success, last.wrong, last.truncated, lane.reward_cents, lane.running.now().steps});
     ++done;
-    if (progress) progress(size_t(done));
-    if (!sink) return;
-    waiting.emplace(lane.job, std::move(trajectory));
-    for (; !waiting.empty() && waiting.begin()->first == written; ++written) sink(waiting.extract(waiting.begin()).mapped());
+    try {
+      if (progress) progress(size_t(done));
+      if (!sink) return;
+      waiting.emplace(lane.job, std::move(trajectory));
+      for (; !waiting.empty() && waiting.begin()->first == written; ++written) sink(waiting.extract(waiting.begin()).mapped());
+    } catch (...) {
+      next = total;  // the other threads need not begin what nobody will see
+      throw;
+    }
   };
 
   parallel.run(threads, [&](int, int thread) {
