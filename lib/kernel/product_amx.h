@@ -8,9 +8,10 @@
 // another), a twentieth of that on average; sums are taken in float.
 //
 // C is computed in squares of 32 x 32: two by two tiles. Both factors lie in blocks of 32 of the inner index, each block four tiles: hi of
-// the first 16 rows (of A; columns of B), hi of the other 16, lo of the first, lo of the others. A tile of A is 16 rows of 32 bf16; one of B is
-// 16 rows, each of 16 pairs: columns 0 ... 15 of rows 2 r and 2 r + 1. B is packed so for panels of 32 columns, within blocks of kDepth
-// rows; A is split on the way, 32 rows by kDepth at a time.
+// the first 16 rows (of A; columns of B), hi of the other 16, lo of the first, lo of the others. A tile's values lie in pairs, which the
+// instruction adds up first; ours are 16 apart in the inner index, which takes one shift and one blend to make. A tile of A is 16 rows of the pairs
+// (p, p + 16), one of B is 16 rows, rows p and p + 16 of 16 columns in pairs. B is packed so for panels of 32 columns, within blocks of
+// kDepth rows; A is split on the way, 32 rows by kDepth at a time.
 #pragma once
 #include <immintrin.h>
 
@@ -146,59 +147,62 @@ struct AmxProduct {
     done = true;
   }
 
-  // A tile's pairs are neighbours in a column of what lies in memory (kOfRows: rows 2 r and 2 r + 1), or neighbours in a row.
+  // A tile's pairs are 16 apart in the inner index: rows r and r + 16 of what lies in memory (kOfRows), or columns.
   enum class Pairs { kOfRows, kOfColumns };
 
   // Splits what lies at `from`, 32 x 16 (pairs of rows) or 16 x 32 (pairs of columns), zero beyond rows and columns, into two tiles;
   // kFlip exchanges the tile's rows and columns, pairs staying pairs.
   template <Pairs pairs, bool kFlip>
   static void split(const float* from, int ld, int rows, int columns, Half* hi, Half* lo) {
-    __m512i h[16], l[16];
-    const auto mask = [](int count) { return __mmask16(count >= 16 ? 0xffff : count > 0 ? (1u << count) - 1 : 0); };
-    for (int r = 0; r < 16; ++r) {
-      __m512 first, second;
-      if constexpr (pairs == Pairs::kOfRows) {
-        first = _mm512_maskz_loadu_ps(2 * r < rows ? mask(columns) : 0, from + size_t(2 * r) * ld);
-        second = _mm512_maskz_loadu_ps(2 * r + 1 < rows ? mask(columns) : 0, from + size_t(2 * r + 1) * ld);
-      } else {
-        first = _mm512_maskz_loadu_ps(r < rows ? mask(columns) : 0, from + size_t(r) * ld);
-        second = _mm512_maskz_loadu_ps(r < rows ? mask(columns - 16) : 0, from + size_t(r) * ld + 16);
+    constexpr bool kOfRows = pairs == Pairs::kOfRows;
+    if (rows >= (kOfRows ? 32 : 16) && columns >= (kOfRows ? 16 : 32)) {
+      split_tile<kFlip>(from, ld, from + (kOfRows ? 16 * size_t(ld) : 16), kOfRows ? 64 * size_t(ld) : 32, hi, lo);
+    } else {
+      alignas(64) float whole[32 * 16];
+      for (int i = 0; i < 32; ++i) {
+        const int row = kOfRows ? i : i % 16, column = kOfRows ? 0 : i / 16 * 16, count = row < rows ? columns - column : 0;
+        const __mmask16 mask = count >= 16 ? 0xffff : count > 0 ? (1u << count) - 1 : 0;
+        _mm512_store_ps(whole + 16 * i, _mm512_maskz_loadu_ps(mask, from + size_t(row) * ld + column));
       }
-      const __m512i first_hi = rounded(first), second_hi = rounded(second);
-      const __m512i first_lo = rounded(_mm512_sub_ps(first, _mm512_castsi512_ps(first_hi)));
-      const __m512i second_lo = rounded(_mm512_sub_ps(second, _mm512_castsi512_ps(second_hi)));
-      if constexpr (pairs == Pairs::kOfRows) {
-        h[r] = _mm512_or_si512(_mm512_srli_epi32(first_hi, 16), second_hi);
-        l[r] = _mm512_or_si512(_mm512_srli_epi32(first_lo, 16), second_lo);
+      split_tile<kFlip>(whole, 16, whole + 16 * 16, 0, hi, lo);
+    }
+  }
+
+  // The same of 16 x 16 values at `first` and their partners at `second`, both with rows `ld` apart. What lies `ahead` of them will be wanted soon.
+  template <bool kFlip>
+  static void split_tile(const float* first, size_t ld, const float* second, size_t ahead, Half* hi, Half* lo) {
+    __m512i h[16], l[16];
+    for (int r = 0; r < 16; ++r, first += ld, second += ld) {
+      const __m512 a = _mm512_loadu_ps(first), b = _mm512_loadu_ps(second);
+      _mm_prefetch(first + ahead, _MM_HINT_T0);
+      _mm_prefetch(second + ahead, _MM_HINT_T0);
+      const __m512i a_hi = rounded(a), b_hi = rounded(b);
+      const __m512i a_lo = rounded(_mm512_sub_ps(a, as_float(a_hi))), b_lo = rounded(_mm512_sub_ps(b, as_float(b_hi)));
+      if constexpr (kFlip) {
+        h[r] = upper_halves(a_hi, b_hi);
+        l[r] = upper_halves(a_lo, b_lo);
       } else {
-        h[r] = upper_halves(first_hi, second_hi);
-        l[r] = upper_halves(first_lo, second_lo);
+        _mm512_store_si512(hi + 32 * r, upper_halves(a_hi, b_hi));
+        _mm512_store_si512(lo + 32 * r, upper_halves(a_lo, b_lo));
       }
     }
     if constexpr (kFlip) {
-      transpose(h);
-      transpose(l);
-    }
-    for (int r = 0; r < 16; ++r) {
-      _mm512_store_si512(hi + 32 * r, h[r]);
-      _mm512_store_si512(lo + 32 * r, l[r]);
+      transpose(h, hi);
+      transpose(l, lo);
     }
   }
 
-  // To the nearest bf16, in the upper halves; the lower ones are zero.
-  static __m512i rounded(__m512 x) {
-    const __m512i up = _mm512_add_epi32(_mm512_castps_si512(x), _mm512_set1_epi32(0x8000));
-    return _mm512_and_si512(up, _mm512_set1_epi32(int(0xffff0000)));
-  }
+  // To the nearest bf16, in the upper halves; what the lower ones hold does not count.
+  static __m512i rounded(__m512 x) { return _mm512_add_epi32(_mm512_castps_si512(x), _mm512_set1_epi32(0x8000)); }
+  static __m512 as_float(__m512i half) { return _mm512_castsi512_ps(_mm512_and_si512(half, _mm512_set1_epi32(int(0xffff0000)))); }
 
+  // Pairs of their upper halves.
   static __m512i upper_halves(__m512i first, __m512i second) {
-    alignas(64) static constexpr Half kOdd[32] = {1,  3,  5,  7,  9,  11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31,
-                                                  33, 35, 37, 39, 41, 43, 45, 47, 49, 51, 53, 55, 57, 59, 61, 63};
-    return _mm512_permutex2var_epi16(first, _mm512_load_si512(kOdd), second);
+    return _mm512_mask_blend_epi16(0xaaaaaaaa, _mm512_srli_epi32(first, 16), second);
   }
 
   // Transposes 16 x 16 values of 32 bits: quarters of 4 x 4, then 4 x 4 of those.
-  static void transpose(__m512i* rows) {
+  static void transpose(const __m512i* rows, Half* to) {
     __m512i t[16];
     for (int i = 0; i < 16; i += 4) {
       const __m512i a = _mm512_unpacklo_epi32(rows[i], rows[i + 1]), b = _mm512_unpackhi_epi32(rows[i], rows[i + 1]);
@@ -212,10 +216,10 @@ struct AmxProduct {
     for (int j = 0; j < 4; ++j) {
       const __m512i a = _mm512_shuffle_i32x4(t[j], t[4 + j], 0x44), b = _mm512_shuffle_i32x4(t[8 + j], t[12 + j], 0x44);
       const __m512i c = _mm512_shuffle_i32x4(t[j], t[4 + j], 0xee), d = _mm512_shuffle_i32x4(t[8 + j], t[12 + j], 0xee);
-      rows[j] = _mm512_shuffle_i32x4(a, b, 0x88);
-      rows[4 + j] = _mm512_shuffle_i32x4(a, b, 0xdd);
-      rows[8 + j] = _mm512_shuffle_i32x4(c, d, 0x88);
-      rows[12 + j] = _mm512_shuffle_i32x4(c, d, 0xdd);
+      _mm512_store_si512(to + 32 * j, _mm512_shuffle_i32x4(a, b, 0x88));
+      _mm512_store_si512(to + 32 * (4 + j), _mm512_shuffle_i32x4(a, b, 0xdd));
+      _mm512_store_si512(to + 32 * (8 + j), _mm512_shuffle_i32x4(c, d, 0x88));
+      _mm512_store_si512(to + 32 * (12 + j), _mm512_shuffle_i32x4(c, d, 0xdd));
     }
   }
 };
