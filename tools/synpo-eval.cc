@@ -36,8 +36,7 @@ int body(int argc, char** argv) {
       .flag('q', "quiet", "no progress", quiet);
   options.parse(argc, argv);
 
-  Input input(checkpoint_path);
-  const Checkpoint checkpoint = read_checkpoint(input);
+  const Checkpoint checkpoint = load_checkpoint(checkpoint_path);
   if (describe) {
     write_file(output_path, checkpoint.describe() + "\n", Output::Kind::kText);
     return 0;

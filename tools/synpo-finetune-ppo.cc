@@ -1,15 +1,16 @@
 // A checkpoint on stdin, fine-tuned by PPO, a checkpoint on stdout.
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "base/progress.h"
 #include "base/signals.h"
 #include "format/run_log.h"
 #include "learn/evaluate.h"
+#include "learn/long_run.h"
 #include "learn/open.h"
 #include "learn/ppo.h"
 #include "learn/recipe.h"
@@ -19,49 +20,44 @@ using namespace synpo;
 
 namespace {
 
-struct Settings {
-  std::string checkpoint = "-", pairs, output = "-", save, resume, init, log, world = "gridworld", method = "synpo";
-  int64_t steps = 20000000, seed = 1, threads = 0, every = 100, report = 10, evaluate_every = 0, evaluate_episodes = 100, lanes, rollout, epochs,
-          minibatches, value_warm_up;
-  bool strip = false, force = false, quiet = false;
+struct Settings : LongRun {
+  std::string checkpoint = "-", pairs, resume, init, world = "gridworld", method = "synpo";
+  int64_t steps = 20000000, lanes, rollout, epochs, minibatches, value_warm_up;
+  Settings() : LongRun(100, 10) {}
 };
 
 const std::vector<std::string> kColumns = {"update",  "states", "seconds", "states_per_s", "episodes", "success", "wrong",        "reward",
                                            "length",  "policy", "value",   "entropy",      "kl",       "clip",    "explained_variance", "seen_success",
                                            "seen_reward", "unseen_success", "unseen_reward"};
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 // Updates until there are enough steps or a signal comes; returns the signal, or 0.
 int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
   TsvLog log(s.log, !s.resume.empty(), kColumns);
   Progress progress("synpo-finetune", "steps", uint64_t(s.steps), s.quiet);
-  const auto start = std::chrono::steady_clock::now();
-  auto reported = start;
+  const TimePoint start = now();
+  TimePoint reported = start;
   int64_t reported_steps = run.steps();
   std::string note;
   while (run.steps() < s.steps && stop_signal() == 0) {
     run.update();
     const int64_t updates = run.updates();
-    const bool last = run.steps() >= s.steps, evaluates = s.evaluate_every > 0 && (updates % s.evaluate_every == 0 || last);
-    if (updates % s.report == 0 || last || evaluates) {
+    const bool last = run.steps() >= s.steps;
+    if (s.reports(updates, last)) {
       const PpoReport r = run.take_report();
       const double n = double(r.finished.episodes);  // 0 / 0: nothing ended
       const double rate = double(run.steps() - reported_steps) / seconds_since(reported);
       RunLogRow::Evaluation e{NAN, NAN, NAN, NAN};
       const Model& model = run.model();
-      if (evaluates) e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(), int(s.evaluate_episodes));
+      if (s.evaluates(updates, last)) e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(), int(s.evaluate_episodes));
       log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n, r.finished.wrong / n,
                  r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value, r.entropy, r.kl, r.clip_fraction, r.explained_variance,
                  e.seen_success, e.seen_reward, e.unseen_success, e.unseen_reward});
       note = short_count(rate) + " steps/s";
       if (n > 0) note += concat(", success ", std::lround(100 * r.finished.successes / n), " %");
-      reported = std::chrono::steady_clock::now();
+      reported = now();
       reported_steps = run.steps();
     }
-    if (!s.save.empty() && updates % s.every == 0 && !last) write_file(s.save, format_checkpoint(run.checkpoint(true)));
+    if (s.saves(updates, last)) write_file(s.save, format_checkpoint(run.checkpoint(true)));
     progress.update(uint64_t(run.steps()), note);
   }
   return stop_signal();
@@ -76,23 +72,12 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
   options.text('c', "checkpoint", "FILE", "the trained policy", s.checkpoint)
       .call(0, "steps", "N", "steps of all worlds together, such as 2e7 [2e7]", [&](const std::string& text) { s.steps = parse_count(text); })
       .text('p', "pairs", "FILE", "the pairs to learn on: TSV env, task, seen (the seen ones of the checkpoint)", s.pairs)
-      .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
-      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
-      .text('o', "output", "FILE", "write the checkpoint to FILE", s.output)
-      .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and on SIGINT or SIGTERM", s.save)
-      .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
-      .text(0, "resume", "FILE", "go on from such a checkpoint, to the same bits; the other options must be the same", s.resume)
+      .text(0, "resume", "FILE", "go on from a checkpoint of --save, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
       .text('w', "world", "WORLD", concat("with --init: ", kWorldNames, "; else the folder of the checkpoint's scenes").c_str(), s.world)
-      .text('m', "method", "NAME", "with --init: the method", s.method)
-      .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
-      .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
-      .integer(0, "evaluate-every", "N", "updates between two evaluations on sampled pairs; 0: none", s.evaluate_every, 0, INT64_MAX)
-      .integer(0, "evaluate-episodes", "N", "episodes of such an evaluation, for seen and for unseen pairs", s.evaluate_episodes, 1, 1000000)
-      .flag(0, "strip", "leave out of the checkpoint what only training needs", s.strip)
-      .flag('f', "force", "write the checkpoint to a terminal", s.force)
-      .flag('q', "quiet", "no progress", s.quiet)
-      .section("PPO")
+      .text('m', "method", "NAME", "with --init: the method", s.method);
+  s.add_to(options);
+  options.section("PPO")
       .integer(0, "lanes", "N", "worlds side by side", s.lanes, 1, 4096)
       .integer(0, "rollout", "N", "steps of each before an update", s.rollout, 1, 100000)
       .integer(0, "epochs", "N", "passes over a rollout", s.epochs, 1, 1000)

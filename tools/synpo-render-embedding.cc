@@ -59,8 +59,7 @@ int embedding(int argc, char** argv) {
   style.scale = picture.scale;
 
   Output output(picture.output, Output::Kind::kBinary, picture.force);
-  Input input(operands.empty() ? "-" : operands[0]);
-  const Checkpoint checkpoint = read_checkpoint(input);
+  const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
   const std::unique_ptr<World> restored = world_of(checkpoint);
   const World& world = *restored;
   const Model model = load_model(checkpoint, world);

@@ -50,8 +50,7 @@ int policy(int argc, char** argv) {
   style.scale = picture.scale;
 
   Output output(picture.output, Output::Kind::kBinary, picture.force);
-  Input input(operands.empty() ? "-" : operands[0]);
-  const Checkpoint checkpoint = read_checkpoint(input);
+  const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
   const std::unique_ptr<World> restored = world_of(checkpoint);
   const GridSet& world = as_gridworld(*restored, "a picture of a policy");
   Model model = load_model(checkpoint, world);

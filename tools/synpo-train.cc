@@ -2,16 +2,17 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/options.h"
 #include "base/progress.h"
 #include "base/signals.h"
 #include "learn/imitate.h"
+#include "learn/long_run.h"
 #include "learn/open.h"
 
 using namespace synpo;
@@ -20,20 +21,11 @@ namespace {
 
 constexpr int64_t kUnknown = INT64_MAX;  // total of a run whose limit in time has not been told in updates
 
-struct Settings {
-  std::string world = "gridworld", pairs, method = "synpo", output = "-", save, resume, init, log, time;
-  int64_t updates = 20000, seed = 1, threads = 0, every = 1000, expect = 0, report = 100, evaluate_every = 0, evaluate_episodes = 100;
-  bool strip = false, force = false, quiet = false;
+struct Settings : LongRun {
+  std::string world = "gridworld", pairs, method = "synpo", resume, init, time;
+  int64_t updates = 20000, expect = 0;
+  Settings() : LongRun(1000, 100) {}
 };
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-Checkpoint load(const std::string& path) {
-  Input input(path);
-  return read_checkpoint(input);
-}
 
 std::string percent(double part) {
   char text[16];
@@ -50,8 +42,8 @@ void check_length(TrajectoryStream& stream, const Settings& settings) {
 int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, double limit_s) {
   RunLog log(settings.log, !settings.resume.empty());
   Progress progress("synpo-train", "updates", uint64_t(run.total_updates()), settings.quiet);
-  const auto start = std::chrono::steady_clock::now();
-  auto reported = start;
+  const TimePoint start = now();
+  TimePoint reported = start;
   const int64_t first = run.updates();
   // Timed are updates that do not depend on the total: those of the warm-up, all where nothing moves, else the first.
   const ImitationOptions& options = run.options();
@@ -73,23 +65,22 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
                      (long long)run.total_updates(), (long long)run.total_updates());
     }
     const bool last = done == run.total_updates();
-    const bool evaluates = settings.evaluate_every > 0 && (done % settings.evaluate_every == 0 || last);
-    if (done % settings.report == 0 || last || evaluates) {
+    if (settings.reports(done, last)) {
       RunLogRow row = run.take_report();
       row.seconds = seconds_since(start);
       row.states_per_s /= seconds_since(reported);
       note = short_count(row.states_per_s) + " states/s, loss " + std::to_string(row.loss).substr(0, 5) + ", right: move " + percent(row.right[0]) +
              " pick " + percent(row.right[1]) + " walk on " + percent(row.right[2]) + " start " + percent(row.right[3]);
-      if (evaluates) {
+      if (settings.evaluates(done, last)) {
         row.evaluation = run.evaluate_sample(int(settings.evaluate_episodes));
         if (!settings.quiet)
           std::fprintf(stderr, "synpo-train: update %lld: success %s seen, %s unseen\n", (long long)done,
                        percent(row.evaluation->seen_success).c_str(), percent(row.evaluation->unseen_success).c_str());
       }
       log.write(row);
-      reported = std::chrono::steady_clock::now();
+      reported = now();
     }
-    if (!settings.save.empty() && done % settings.every == 0 && !last) write_file(settings.save, format_checkpoint(run.checkpoint(true)));
+    if (settings.saves(done, last)) write_file(settings.save, format_checkpoint(run.checkpoint(true)));
     progress.update(uint64_t(done), note);
   }
   return stop_signal();
@@ -110,22 +101,11 @@ int body(int argc, char** argv) {
               if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected " + listed_methods());
               s.method = name;
             })
-      .integer('s', "seed", "N", "seed", s.seed, 0, INT64_MAX)
       .text('w', "world", "WORLD", kWorldNames, s.world)
-      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", s.threads, 0, 1024)
-      .text('o', "output", "FILE", "write the checkpoint to FILE", s.output)
-      .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and on SIGINT or SIGTERM", s.save)
-      .integer(0, "every", "N", "updates between two of them", s.every, 1, INT64_MAX)
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
       .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)
-      .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX)
-      .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", s.log)
-      .integer(0, "report", "N", "updates between two rows of the log", s.report, 1, INT64_MAX)
-      .integer(0, "evaluate-every", "N", "updates between two evaluations on sampled pairs; 0: none", s.evaluate_every, 0, INT64_MAX)
-      .integer(0, "evaluate-episodes", "N", "episodes of such an evaluation, for seen and for unseen pairs", s.evaluate_episodes, 1, 1000000)
-      .flag(0, "strip", "leave out of the checkpoint what only training needs", s.strip)
-      .flag('f', "force", "write the checkpoint to a terminal", s.force)
-      .flag('q', "quiet", "no progress", s.quiet);
+      .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX);
+  s.add_to(options);
   hyper.add_to(options);
   options.parse(argc, argv);
   double limit_s = 0;
@@ -141,7 +121,7 @@ int body(int argc, char** argv) {
   catch_stop_signals();
 
   Parallel parallel(int(s.threads));
-  const Checkpoint from = resumes ? load(s.resume) : Checkpoint();
+  const Checkpoint from = resumes ? load_checkpoint(s.resume) : Checkpoint();
   const std::unique_ptr<World> opened = resumes ? world_of(from, options.given("world") ? s.world : "") : open_world(s.world);
   const World& world = *opened;
   std::vector<EnvTask> seen;
@@ -155,7 +135,7 @@ int body(int argc, char** argv) {
     run = std::make_unique<Imitation>(world, parallel, from);
   } else {
     run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.sight()), seen, uint64_t(s.seed));
-    if (!s.init.empty()) run->take_weights(load_model(load(s.init), world));
+    if (!s.init.empty()) run->take_weights(load_model(load_checkpoint(s.init), world));
   }
   if (options.given("count") || (!resumes && limit_s == 0)) run->set_total_updates(s.updates);
   if (!resumes && limit_s > 0) run->set_total_updates(kUnknown);

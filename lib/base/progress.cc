@@ -13,17 +13,16 @@ constexpr double kBarEvery_s = 0.2, kLineEvery_s = 30;
 
 Progress::Progress(std::string tool, std::string unit, uint64_t total, bool quiet)
     : tool_(std::move(tool)), unit_(std::move(unit)), total_(total), quiet_(quiet), terminal_(isatty(2) != 0),
-      start_(std::chrono::steady_clock::now()), last_(start_) {}
+      start_(now()), last_(start_) {}
 
 Progress::~Progress() { finish(); }
 
 void Progress::update(uint64_t done, const std::string& note) {
   if (quiet_) return;
-  const auto now = std::chrono::steady_clock::now();
-  const double since_s = std::chrono::duration<double>(now - last_).count();
-  if (since_s < (terminal_ ? kBarEvery_s : kLineEvery_s)) return;
-  last_ = now;
-  show(done, note, std::chrono::duration<double>(now - start_).count());
+  const TimePoint moment = now();
+  if (seconds_between(last_, moment) < (terminal_ ? kBarEvery_s : kLineEvery_s)) return;
+  last_ = moment;
+  show(done, note, seconds_between(start_, moment));
 }
 
 void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {

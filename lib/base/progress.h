@@ -1,8 +1,9 @@
 // Progress of long work on stderr: a bar with rate and time left on a terminal, a plain line every so often elsewhere.
 #pragma once
-#include <chrono>
 #include <cstdint>
 #include <string>
+
+#include "base/clock.h"
 
 namespace synpo {
 
@@ -22,7 +23,7 @@ class Progress {
   std::string tool_, unit_;
   uint64_t total_;
   bool quiet_, terminal_, open_ = false;
-  std::chrono::steady_clock::time_point start_, last_;
+  TimePoint start_, last_;
 };
 
 // "1:02:03" or "4:05".

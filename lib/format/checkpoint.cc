@@ -105,6 +105,11 @@ Checkpoint read_checkpoint(Input& input) {
   return c;
 }
 
+Checkpoint load_checkpoint(const std::string& path) {
+  Input input(path);
+  return read_checkpoint(input);
+}
+
 std::string format_checkpoint(const Checkpoint& checkpoint) {
   SafeTensors file = checkpoint.file;
   file.metadata.clear();

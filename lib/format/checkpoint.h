@@ -41,6 +41,7 @@ struct Checkpoint {
 };
 
 Checkpoint read_checkpoint(Input& input);
+Checkpoint load_checkpoint(const std::string& path);  // "-": standard input
 std::string format_checkpoint(const Checkpoint& checkpoint);
 
 }  // namespace synpo

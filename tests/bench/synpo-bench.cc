@@ -12,13 +12,13 @@
 // what is left when the pairs are composed.
 #include <Eigen/Core>
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "base/clock.h"
 #include "base/parallel.h"
 #include "base/random.h"
 #include "learn/episode.h"
@@ -36,11 +36,8 @@
 #include "world/view.h"
 
 using namespace synpo;
-using Clock = std::chrono::steady_clock;
 
 namespace {
-
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 // Random steps of a world; an observation is a picture of the start of an episode, or features drawn at random.
 struct RandomBatch {
@@ -93,10 +90,10 @@ template <class Work>
 double rate(int states, double limit_s, Work&& work) {
   work();
   std::vector<double> rates;
-  const auto start = Clock::now();
+  const TimePoint start = now();
   while (rates.size() < 3 || seconds_since(start) < limit_s) {
     int done = 0;
-    const auto begin = Clock::now();
+    const TimePoint begin = now();
     do work(), done += states;
     while (seconds_since(begin) < 0.5);
     rates.push_back(done / seconds_since(begin));
