@@ -48,7 +48,8 @@ int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
       const double rate = double(run.steps() - reported_steps) / seconds_since(reported);
       RunLogRow::Evaluation e{NAN, NAN, NAN, NAN};
       const Model& model = run.model();
-      if (s.evaluates(updates, last)) e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(), int(s.evaluate_episodes));
+      if (s.evaluates(updates, last))
+        e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(), int(s.evaluate_episodes));
       log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n, r.finished.wrong / n,
                  r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value, r.entropy, r.kl, r.clip_fraction, r.explained_variance,
                  e.seen_success, e.seen_reward, e.unseen_success, e.unseen_reward});
