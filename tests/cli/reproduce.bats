@@ -82,6 +82,7 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     scripts/reproduce table4 --budget 1e6 --seeds 1 -o results/table4
     grep -q 'train .*-m mlp --lr 0.5 --task-loss 0.25 ' calls
     [ "$(grep -c 'train .*--lr' calls)" = 1 ]
+    [ "$(grep -- '^- ' results/table4/README.md)" = '- mlp: `--lr 0.5 --task-loss 0.25`' ]
 }
 
 @test "reproduce: nonsense is wrong usage, and says what is right" {
