@@ -28,8 +28,8 @@ struct Terms {
     from.push_back(values);
     factor.push_back(by);
   }
-  void combine(size_t count, T* to) const {
-    kernels<T>().combine(int(from.size()), from.data(), factor.data(), count, to, false);
+  void combine(size_t count, T* to, bool accumulate = false) const {
+    kernels<T>().combine(int(from.size()), from.data(), factor.data(), count, to, accumulate);
   }
 };
 
@@ -127,29 +127,40 @@ void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
 
 template <class T>
 void Conv<T>::reserve(Slab& slab, int samples) const {
-  slab.rows = size_t(samples) * rows_;
-  slab.inputs.grow(products_ * slab.rows * depth_);
-  slab.outputs.grow(products_ * slab.rows * out_);
+  if (keeps_gradients()) {
+    slab.gradients.grow(shard_count(samples, unit()) * dfactors_size());
+  } else {
+    slab.rows = size_t(samples) * rows_;
+    slab.inputs.grow(products_ * slab.rows * depth_);
+    slab.outputs.grow(products_ * slab.rows * out_);
+  }
 }
 
 template <class T>
 void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const {
+  const bool here = keeps_gradients();
   const int samples = part.size(), rows = samples * rows_;
-  const size_t first = size_t(part.begin) * rows_, slab_rows = slab.rows;
-  T* inputs = slab.inputs.data() + first * depth_;
-  T* outputs = slab.outputs.data() + first * out_;
+  const size_t inputs_size = size_t(products_) * rows * depth_, outputs_size = size_t(products_) * rows * out_;
+  T* dinputs = scratch.grow(inputs_size + (here ? inputs_size + outputs_size : 0));
+  const size_t first = size_t(part.begin) * rows_, stride = here ? rows : slab.rows;
+  T* own_inputs = here ? dinputs + inputs_size : slab.inputs.data() + first * depth_;
+  T* own_outputs = here ? own_inputs + inputs_size : slab.outputs.data() + first * out_;
+  const T* inputs = here && form_ == Form::kPlain ? x : own_inputs;
+  const T* outputs = here && !transformed() ? dy : own_outputs;
   if (transformed()) {
-    transform().inputs(tiles(in_, samples, slab_rows), x, inputs);
-    transform().outputs_adjoint(tiles(out_, samples, slab_rows), dy, outputs);
+    transform().inputs(tiles(in_, samples, stride), x, own_inputs);
+    transform().outputs_adjoint(tiles(out_, samples, stride), dy, own_outputs);
   } else {
-    gather_pixels(samples, x, inputs);
-    std::copy_n(dy, samples * y_size(), outputs);
+    if (inputs != x) gather_pixels(samples, x, own_inputs);
+    if (outputs != dy) std::copy_n(dy, samples * y_size(), own_outputs);
   }
+  for (int p = 0; here && p < products_; ++p)
+    gemm(Op::kTransposed, Op::kAsIs, depth_, out_, rows, inputs + p * stride * depth_, depth_, outputs + p * stride * out_, out_,
+         slab.gradients.data() + part.begin / unit() * dfactors_size() + size_t(p) * depth_ * out_, out_);
   if (!dx) return;
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, outputs, out_, backward_[0], dx, depth_, add_dx);
-  T* dinputs = scratch.grow(size_t(products_) * rows * depth_);
   for (int p = 0; p < products_; ++p)
-    gemm(Op::kAsIs, rows, outputs + p * slab_rows * out_, out_, backward_[p], dinputs + size_t(p) * rows * depth_, depth_);
+    gemm(Op::kAsIs, rows, outputs + p * stride * out_, out_, backward_[p], dinputs + size_t(p) * rows * depth_, depth_);
   if (!add_dx) std::fill_n(dx, samples * x_size(), T(0));
   if (transformed())
     transform().inputs_adjoint(tiles(in_, samples, rows), dinputs, dx);
@@ -161,8 +172,14 @@ template <class T>
 void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const {
   const int blocks = shard_count(depth_, gradient_rows_), p = shard / blocks;
   const Range range = shard_range(depth_, gradient_rows_, shard % blocks);
+  const size_t at = (size_t(p) * depth_ + range.begin) * out_;
+  if (keeps_gradients()) {
+    Terms<T> parts;
+    for (int part = 0; part < shard_count(samples, unit()); ++part) parts.add(1, slab.gradients.data() + part * dfactors_size() + at);
+    return parts.combine(size_t(range.size()) * out_, dfactors + at, accumulate);
+  }
   gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_,
-       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + (size_t(p) * depth_ + range.begin) * out_, out_, accumulate);
+       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + at, out_, accumulate);
 }
 
 template <class T>

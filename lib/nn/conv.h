@@ -40,11 +40,12 @@ class Conv {
   // One thread. `scratch` belongs to the thread.
   void forward(int samples, const T* x, T* y, Buffer<T>& scratch) const;
 
-  // Backward, in three parts. The batch is taken in slabs of at most kSlab samples, so that memory does not grow with it. First, parts of a slab,
-  // on any threads: dx (may be null) = or, where add_dx, += the input's gradient; what the weight's gradient needs is kept in the slab.
+  // Backward, in three parts. The batch is taken in slabs of at most kSlab samples, so that memory does not grow with it. First, parts of a slab, a
+  // unit() each but the last, on any threads: dx (may be null) = or, where add_dx, += the input's gradient; what the weight's gradient needs is kept
+  // in the slab: the parts' own gradients of the transformed weight where those are small, else inputs and outputs.
   static constexpr int kSlab = 512;
   struct Slab {
-    Buffer<T> inputs, outputs;
+    Buffer<T> inputs, outputs, gradients;
     size_t rows = 0;  // from one product to the next
   };
   void reserve(Slab& slab, int samples) const;
@@ -65,6 +66,8 @@ class Conv {
   void gather_pixels(int samples, const T* x, T* inputs) const;
   void gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const;
   const Transform<T>& transform() const;
+  // Whether a part's gradient of the transformed weight is so much smaller than inputs and outputs that it is kept in their place.
+  bool keeps_gradients() const { return 2 * dfactors_size() <= size_t(unit()) * rows_ * products_ * (depth_ + out_); }
   TileShape tiles(int channels, int samples, size_t rows) const { return {side_, channels, samples, rows}; }
 
   int side_, in_, out_, kernel_, stride_, side_out_;

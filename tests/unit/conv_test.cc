@@ -32,6 +32,10 @@ constexpr ConvShape kConvShapes[] = {
     {"1x1", 2, 11, 6, 1, 1, 3},
     {"strided 1x1 at 16", 16, 3, 5, 1, 2, 2},
     {"strided 1x1 at 4", 4, 6, 17, 1, 2, 3},
+    // Weights that are no smaller than what their gradients are made of, which is kept then.
+    {"Toeplitz, large weight", 2, 70, 80, 3, 1, 3},
+    {"strided 3x3, large weight", 4, 40, 512, 3, 2, 1},
+    {"1x1, large weight", 2, 280, 260, 1, 1, 2},
 };
 
 // From the definition.
@@ -58,19 +62,18 @@ struct ConvResult {
   std::vector<T> y, dx, dw;
 };
 
-// All of the backward pass, as the network does it: slab by slab, in parts of a size that is not the unit.
+// All of the backward pass, as the network does it: slab by slab, unit by unit.
 template <class T>
 void backward(Parallel& parallel, const Conv<T>& conv, int samples, const std::vector<T>& x, const std::vector<T>& dy, T* dx, bool add_dx,
               std::vector<T>& dw) {
-  constexpr int kPart = 7;
   typename Conv<T>::Slab slab;
   std::vector<Buffer<T>> scratch(parallel.threads());
   std::vector<T> dfactors(conv.dfactors_size(), T(kNan));
   conv.reserve(slab, conv.kSlab);
   for (int begin = 0; begin < samples; begin += conv.kSlab) {
     const int size = std::min(samples - begin, conv.kSlab);
-    parallel.run(shard_count(size, kPart), [&](int shard, int thread) {
-      const Range part = shard_range(size, kPart, shard);
+    parallel.run(shard_count(size, conv.unit()), [&](int shard, int thread) {
+      const Range part = shard_range(size, conv.unit(), shard);
       const size_t at = begin + part.begin;
       conv.backward(slab, part, x.data() + at * conv.x_size(), dy.data() + at * conv.y_size(), dx ? dx + at * conv.x_size() : nullptr, add_dx,
                     scratch[thread]);
@@ -166,8 +169,9 @@ std::string form_name(const testing::TestParamInfo<ConvShape>& info) {
 INSTANTIATE_TEST_SUITE_P(Conv, ConvForms, testing::ValuesIn(kConvShapes), form_name);
 
 TEST(Conv, LargeBatchesOnOneAndTwoThreads) {
-  // More samples than are transformed at once, and no multiple of any unit.
-  for (const ConvShape& s : {ConvShape{"", 2, 5, 6, 3, 1, 1043}, ConvShape{"", 4, 3, 4, 3, 1, 1043}, ConvShape{"", 4, 5, 3, 3, 2, 1043}}) {
+  // More samples than are transformed at once, and no multiple of any unit; small weights and large ones.
+  for (const ConvShape& s : {ConvShape{"", 2, 5, 6, 3, 1, 1043}, ConvShape{"", 4, 3, 4, 3, 1, 1043}, ConvShape{"", 4, 5, 3, 3, 2, 1043},
+                             ConvShape{"", 2, 70, 80, 3, 1, 1043}, ConvShape{"", 4, 66, 66, 3, 1, 1043}}) {
     const int side_out = (s.side + s.stride - 1) / s.stride;
     const std::vector<float> x = random_values<float>(size_t(s.samples) * s.side * s.side * s.in, 1), w = random_values<float>(9 * size_t(s.in) * s.out, 2),
                              dy = random_values<float>(size_t(s.samples) * side_out * side_out * s.out, 3);
