@@ -65,6 +65,8 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     echo no-task-1 >results/stop
     ! scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results 2>err || complain "a training that failed was passed over"
     [ ! -e results/README.md ]
+    trained >got
+    printf '%s\n' full-1 no-env-1 no-task-1 | cmp - got
     rm calls
     scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results
     ! trained | grep -qx 'full-1\|no-env-1' || complain "trained again: $(trained)"
