@@ -137,26 +137,35 @@ void Conv<T>::reserve(Slab& slab, int samples) const {
 }
 
 template <class T>
+auto Conv<T>::operands(Slab& slab, Range part, const T* x, const T* dy, T* own) const -> Operands {
+  const int samples = part.size();
+  const size_t first = size_t(part.begin) * rows_, rows = keeps_gradients() ? size_t(samples) * rows_ : slab.rows;
+  T* inputs = keeps_gradients() ? own : slab.inputs.data() + first * depth_;
+  T* outputs = keeps_gradients() ? own + products_ * rows * depth_ : slab.outputs.data() + first * out_;
+  if (transformed()) {
+    transform().inputs(tiles(in_, samples, rows), x, inputs);
+    transform().outputs_adjoint(tiles(out_, samples, rows), dy, outputs);
+    return {inputs, outputs, rows};
+  }
+  if (keeps_gradients() && form_ == Form::kPlain) return {x, dy, rows};
+  gather_pixels(samples, x, inputs);
+  if (keeps_gradients()) return {inputs, dy, rows};
+  std::copy_n(dy, samples * y_size(), outputs);
+  return {inputs, outputs, rows};
+}
+
+template <class T>
 void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const {
-  const bool here = keeps_gradients();
   const int samples = part.size(), rows = samples * rows_;
   const size_t inputs_size = size_t(products_) * rows * depth_, outputs_size = size_t(products_) * rows * out_;
-  T* dinputs = scratch.grow(inputs_size + (here ? inputs_size + outputs_size : 0));
-  const size_t first = size_t(part.begin) * rows_, stride = here ? rows : slab.rows;
-  T* own_inputs = here ? dinputs + inputs_size : slab.inputs.data() + first * depth_;
-  T* own_outputs = here ? own_inputs + inputs_size : slab.outputs.data() + first * out_;
-  const T* inputs = here && form_ == Form::kPlain ? x : own_inputs;
-  const T* outputs = here && !transformed() ? dy : own_outputs;
-  if (transformed()) {
-    transform().inputs(tiles(in_, samples, stride), x, own_inputs);
-    transform().outputs_adjoint(tiles(out_, samples, stride), dy, own_outputs);
-  } else {
-    if (inputs != x) gather_pixels(samples, x, own_inputs);
-    if (outputs != dy) std::copy_n(dy, samples * y_size(), own_outputs);
+  T* dinputs = scratch.grow(inputs_size + (keeps_gradients() ? inputs_size + outputs_size : 0));
+  const auto [inputs, outputs, stride] = operands(slab, part, x, dy, dinputs + inputs_size);
+  if (keeps_gradients()) {
+    T* gradients = slab.gradients.data() + part.begin / unit() * dfactors_size();
+    for (int p = 0; p < products_; ++p)
+      gemm(Op::kTransposed, Op::kAsIs, depth_, out_, rows, inputs + p * stride * depth_, depth_, outputs + p * stride * out_, out_,
+           gradients + size_t(p) * depth_ * out_, out_);
   }
-  for (int p = 0; here && p < products_; ++p)
-    gemm(Op::kTransposed, Op::kAsIs, depth_, out_, rows, inputs + p * stride * depth_, depth_, outputs + p * stride * out_, out_,
-         slab.gradients.data() + part.begin / unit() * dfactors_size() + size_t(p) * depth_ * out_, out_);
   if (!dx) return;
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, outputs, out_, backward_[0], dx, depth_, add_dx);
   for (int p = 0; p < products_; ++p)

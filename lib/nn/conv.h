@@ -66,6 +66,13 @@ class Conv {
   void gather_pixels(int samples, const T* x, T* inputs) const;
   void gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const;
   const Transform<T>& transform() const;
+  // Inputs and outputs of a part's products, `rows` from one product to the next: in the slab where it keeps them, else in `own`, or x and dy
+  // themselves where they will do.
+  struct Operands {
+    const T *inputs, *outputs;
+    size_t rows;
+  };
+  Operands operands(Slab& slab, Range part, const T* x, const T* dy, T* own) const;
   // Whether a part's gradient of the transformed weight is so much smaller than inputs and outputs that it is kept in their place.
   bool keeps_gradients() const { return 2 * dfactors_size() <= size_t(unit()) * rows_ * products_ * (depth_ + out_); }
   TileShape tiles(int channels, int samples, size_t rows) const { return {side_, channels, samples, rows}; }
