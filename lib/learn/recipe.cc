@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "learn/model.h"
 
 namespace synpo {
 namespace {
@@ -50,19 +51,19 @@ const Hyper kHypers[] = {
     {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
     {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
     {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
-    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1); sf: 1", "The losses"},
+    {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
     {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
     {"task-loss", &O::task_loss, 0, 1e6, false, "weight of task disentanglement (lambda 3)"},
     {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},
     {"normalise-input", &O::normalise_input, 0, 1, true, "1: batch normalisation of the pictures, 0: fixed scaling"},
     {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "1: embeddings are scaled to one length"},
-    {"feature", &O::feature, 1, 4096, true, "size d of the state feature; mlp, kitchens: 256"},
+    {"feature", &O::feature, 1, 4096, true, "size d of the state feature; kitchens: 256"},
     {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
     {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
     {"hidden", &O::hidden, 1, 16384, true, "hidden units of alpha, beta, f_env and f_task"},
     {"action-embedding", &O::action_embedding, 0, 4096, true, "synpo, mtl: size of learned phi(a); 0: phi(a) is one-hot", nullptr, {}, true,
      {"synpo", "mtl"}},
-    {"head-hidden", &O::head_hidden, 1, 16384, true, "mlp, modulenet, sf: hidden units of their own parts; modulenet: 128, sf: 512",
+    {"head-hidden", &O::head_hidden, 1, 16384, true, "mlp, modulenet, sf: hidden units of their own parts",
      "Single methods", {}, true, {"mlp", "modulenet", "sf"}},
     {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true, {"modulenet"}},
     {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true, {"modulenet"}},
@@ -71,13 +72,18 @@ const Hyper kHypers[] = {
     {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true, {"sf"}},
 };
 
-// What differs from method to method, in every recipe.
+// What differs from method to method.
 struct MethodDefault {
   const char *method, *name;
   double value;
 };
+// In every recipe: what the method is.
 constexpr MethodDefault kMethodDefaults[] = {
     {"mlp", "feature", 256}, {"modulenet", "head-hidden", 128}, {"sf", "head-hidden", 512}, {"sf", "reward-loss", 1}};
+// In "fast": what scripts/reproduce grid has chosen.
+constexpr MethodDefault kFastDefaults[] = {{"mlp", "embedding-sd", 0.3}, {"mlp", "weight-decay", 1e-5}, {"modulenet", "dropout", 0},
+                                           {"modulenet", "weight-decay", 0}, {"sf", "sf-loss", double(SfLoss::kCrossEntropy)},
+                                           {"sf", "embedding-sd", 0.1}, {"sf", "reward-loss", 0.01}, {"sf", "weight-decay", 1e-4}};
 
 const Hyper& find(const std::string& name) {
   return *std::find_if(std::begin(kHypers), std::end(kHypers), [&](const Hyper& hyper) { return hyper.name == name; });
@@ -86,6 +92,12 @@ const Hyper& find(const std::string& name) {
 std::string shortest(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+template <size_t N>
+void give(const MethodDefault (&defaults)[N], const std::string& method, O& options) {
+  for (const MethodDefault& given : defaults)
+    if (method == given.method) options.*find(given.name).value = given.value;
 }
 
 std::string show(const Hyper& hyper, double value) { return hyper.choices.empty() ? shortest(value) : hyper.choices[size_t(value)]; }
@@ -148,8 +160,7 @@ double O::rate(int64_t update, int64_t total) const {
 ImitationOptions recipe(const std::string& name, const std::string& method, Sight sight) {
   ImitationOptions options;
   if (sight == Sight::kFeatures) options.feature = kTemporalFeature;
-  for (const MethodDefault& given : kMethodDefaults)
-    if (method == given.method) options.*find(given.name).value = given.value;
+  give(kMethodDefaults, method, options);
   if (name == "paper") {
     options.normalise_input = 1;
     return options;
@@ -168,8 +179,27 @@ ImitationOptions recipe(const std::string& name, const std::string& method, Sigh
   options.warm_up = 200;
   options.task_loss = 1;
   options.embedding_sd = 1;
+  give(kFastDefaults, method, options);
   return options;
 }
+
+namespace {
+
+// A recipe's value of a hyper-parameter, and in parentheses the methods that have another: "0.001 (mlp 1e-05, modulenet 0)".
+std::string default_of(const Hyper& hyper, const std::string& name) {
+  std::string common, others;
+  for (const std::string& method : method_names()) {
+    if (!hyper.methods.empty() && !hyper.methods.count(method)) continue;
+    const std::string value = show(hyper, recipe(name, method).*hyper.value);
+    if (common.empty())
+      common = value;
+    else if (value != common)
+      others += (others.empty() ? "" : ", ") + method + " " + value;
+  }
+  return others.empty() ? common : common + " (" + others + ")";
+}
+
+}  // namespace
 
 void RecipeOptions::add_to(Options& options) {
   options.call(0, "recipe", "NAME", "preset: fast, or paper (the supplement to the letter) [fast]", [this](const std::string& name) {
@@ -182,10 +212,9 @@ void RecipeOptions::add_to(Options& options) {
     recipe_given_ = true;
   });
   static std::map<std::string, std::string> help;  // option tables keep pointers
-  const ImitationOptions fast = recipe("fast"), paper = recipe("paper");
   for (const Hyper& hyper : kHypers) {
     if (hyper.heading) options.section(hyper.heading);
-    const std::string a = show(hyper, fast.*hyper.value), b = show(hyper, paper.*hyper.value);
+    const std::string a = default_of(hyper, "fast"), b = default_of(hyper, "paper");
     const std::string shown = std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
     options.call(0, hyper.name, "X", (help[hyper.name] = shown).c_str(), [this, &hyper](const std::string& text) {
       double value = 0;

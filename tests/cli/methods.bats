@@ -1,7 +1,7 @@
 load common
 
 # Each with what it is called on the command line.
-METHODS=("synpo" "synpo --action-embedding 3" "mtl" "mlp" "modulenet" "sf" "sf --sf-loss q" "sf --sf-loss ce")
+METHODS=("synpo" "synpo --action-embedding 3" "mtl" "mlp" "modulenet" "sf --sf-loss td" "sf --sf-loss q" "sf --sf-loss ce")
 SMALL=(--feature 16 --basis 12 --embedding 10 --hidden 24)
 
 setup_file() { make_inputs; }
@@ -39,7 +39,7 @@ setup() {
 
 @test "a method that learns values takes the best action unless told otherwise" {
     temperature() { awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "temperature") at = i } END { print $at }' "$1"; }
-    for case in "sf:0" "sf --sf-loss q:0" "sf --sf-loss ce:0.5" "mlp:0.5"; do
+    for case in "sf --sf-loss td:0" "sf --sf-loss q:0" "sf:0.5" "mlp:0.5"; do
         # shellcheck disable=SC2086
         synpo-train "${TINY[@]}" "${SMALL[@]}" -m ${case%:*} -n 1 --strip <e.jsonl >m.ckpt
         synpo-eval -q -p two.tsv -n 1 <m.ckpt >got

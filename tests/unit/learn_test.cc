@@ -460,9 +460,21 @@ TEST(Recipe, SomeValuesAreTheMethods) {
     EXPECT_EQ(recipe(name, "mlp").feature, 256);
     EXPECT_EQ(recipe(name, "modulenet").head_hidden, 128);
     EXPECT_EQ(recipe(name, "sf").head_hidden, 512);
-    EXPECT_EQ(recipe(name, "sf").reward_loss, 1);
     EXPECT_EQ(describe_options(recipe(name, "mtl")), describe_options(synpo));
     EXPECT_EQ(synpo.reward_loss, 0.01);
+  }
+}
+
+TEST(Recipe, FastHasWhatTheGridChoseForAMethodAndPaperHasNot) {
+  EXPECT_EQ(recipe("paper", "sf").reward_loss, 1);
+  EXPECT_EQ(SfLoss(recipe("paper", "sf").sf_loss), SfLoss::kTemporalDifference);
+  EXPECT_EQ(recipe("fast", "sf").reward_loss, 0.01);
+  EXPECT_EQ(SfLoss(recipe("fast", "sf").sf_loss), SfLoss::kCrossEntropy);
+  EXPECT_EQ(recipe("fast", "modulenet").dropout, 0);
+  EXPECT_EQ(recipe("fast", "mlp").embedding_sd, 0.3);
+  for (const char* method : {"mlp", "modulenet", "sf"}) {
+    EXPECT_EQ(recipe("paper", method).weight_decay, 0.001) << method;
+    EXPECT_LT(recipe("fast", method).weight_decay, 0.001) << method;
   }
 }
 
@@ -489,8 +501,8 @@ TEST(Recipe, FromTheCommandLine) {
   }
   ImitationOptions want = recipe("fast", "sf");
   want.env_loss = want.task_loss = want.reward_loss = 0;
-  want.sf_loss = 2;
-  EXPECT_EQ(describe_options(from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "ce"}, "sf")), describe_options(want));
+  want.sf_loss = 1;
+  EXPECT_EQ(describe_options(from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "q"}, "sf")), describe_options(want));
   EXPECT_EQ(thrown([] { from_command_line({"--sf-loss", "ce"}, "mlp"); }), "64 -m mlp has no --sf-loss");
   EXPECT_EQ(thrown([] { from_command_line({"--dropout", "0.1"}); }), "64 -m synpo has no --dropout");
   EXPECT_EQ(from_command_line({"--action-embedding", "3"}, "mtl").action_embedding, 3);
