@@ -9,7 +9,7 @@ stand_ins() {
 #!/bin/bash
 echo "train $*" >>"$CALLS"
 cat >read
-out= save= log=
+all=$* out= save= log=
 while [ $# -gt 0 ]; do
     case $1 in -o) out=$2 ;; --save) save=$2 ;; --log) log=$2 ;; esac
     shift
@@ -19,7 +19,7 @@ if [ -f stop ] && [ "$out" = "$(cat stop).part" ]; then
     echo half >"$save"
     exit 143
 fi
-echo ckpt >"$out"
+echo "$all" >"$out"
 echo rows >"$log"
 END
     cat >build/synpo-eval <<'END'
@@ -85,6 +85,30 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     grep -q 'train .*-m mlp --lr 0.5 --task-loss 0.25 ' calls
     [ "$(grep -c 'train .*--lr' calls)" = 1 ]
     [ "$(grep -- '^- ' results/table4/README.md)" = '- mlp: `--lr 0.5 --task-loss 0.25`' ]
+}
+
+@test "reproduce grid: chosen is the most success on the pairs held back, or the best reward where none is better than guessing" {
+    stand_ins
+    cat >build/synpo-eval <<'END'
+#!/bin/bash
+while [ "$1" != -c ]; do shift; done
+successes=5 reward=-900
+case $(cat "$2") in
+*"-m synpo --lr 0.001 "*) successes=50 ;;
+*"-m mlp "*"--embedding-sd 0.3 --weight-decay 0.001 "*) successes=7 ;;
+*"-m modulenet "*"--dropout 0 --weight-decay 0.0001 "*) successes=3 reward=-100 ;;
+*"-m sf "*"td --embedding-sd 0.1 "*) successes=0 reward=300 ;;
+*) seen=100 ;;
+esac
+printf 'run\tmethod\tseen\tepisodes\tsuccesses\treward\n'
+printf 'x\tm\t1\t100\t%s\t900\nx\tm\t0\t100\t%s\t%s\n' "${seen-0}" $successes $reward
+END
+    scripts/reproduce grid --budget 1e6 -o results
+    cut -f 1-3 results/choice.tsv >got
+    printf '%s\t%s\t%s\n' mlp '--lr 0.002 --embedding-sd 0.3 --weight-decay 0.001' 0.0700 \
+        modulenet '--lr 0.002 --dropout 0 --weight-decay 0.0001' 0.0300 mtl '--lr 0.001' 0.0500 \
+        sf '--lr 0.002 --sf-loss td --embedding-sd 0.1 --reward-loss 0.01 --weight-decay 0.001' 0.0000 synpo '--lr 0.001' 0.5000 | cmp - got
+    [ "$(trained | sort -u | wc -l)" = "$(wc -l <results/runs)" ]
 }
 
 @test "reproduce: nonsense is wrong usage, and says what is right" {
