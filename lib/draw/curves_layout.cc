@@ -98,10 +98,10 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   out.legend_y = top;
   if (const int legend = lay_out_curves_legend(set, one_panel, style.scale, inside, font).height) top += legend + px(3);
 
-  const auto marks_room = [&](const std::vector<std::string>& parts) {
+  const auto marks_room = [&](const std::vector<int>& parts) {
     int widest = 0;
     for (const CurveMark& mark : style.marks)
-      if (mark.part.empty() || std::find(parts.begin(), parts.end(), mark.part) != parts.end())
+      if (mark.part.empty() || std::any_of(parts.begin(), parts.end(), [&](int part) { return set.parts[part] == mark.part; }))
         widest = std::max(widest, font.width(mark.label, out.mark_size));
     return widest > 0 ? std::min(widest, inside / (4 * panels)) + out.mark_space : 0;
   };
@@ -109,27 +109,29 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
     fail(Exit::kUsage, "no room for the axes in a picture of ", width / style.scale, "x", height / style.scale,
          " points: give a larger --size");
   };
+  // Panels are as wide as one another, and beside each is what the labels of its marks take.
+  int for_marks = 0;
   for (int panel = 0; panel < panels; ++panel) {
     CurvesLayout::Panel next;
-    std::vector<std::string> names;
-    for (int part = one_panel ? 0 : panel; part < (one_panel ? int(set.parts.size()) : panel + 1); ++part) {
-      next.parts.push_back(part);
-      names.push_back(set.parts[part]);
-    }
-    if (next.parts.size() == 1 && !names[0].empty()) next.title = names[0] + " pairs";
-    const int share = (inside - (panels - 1) * px(kBetweenPt)) / panels, left = margin + panel * (share + px(kBetweenPt));
+    for (int part = one_panel ? 0 : panel; part < (one_panel ? int(set.parts.size()) : panel + 1); ++part) next.parts.push_back(part);
+    for_marks += marks_room(next.parts);
+    out.panels.push_back(next);
+  }
+  const int share = (inside - for_marks - (panels - 1) * px(kBetweenPt)) / panels;
+  int left = margin;
+  for (CurvesLayout::Panel& next : out.panels) {
+    if (next.parts.size() == 1 && !set.parts[next.parts[0]].empty()) next.title = set.parts[next.parts[0]] + " pairs";
     const int title = next.title.empty() ? 0 : out.panel_title_size + px(1.5);
     if (share < px(kSmallestPlotPt) || height - top - margin < px(kSmallestPlotPt)) no_room();
-    next.area = {left, top, share, height - margin - top};
+    next.area = {left, top, share + marks_room(next.parts), height - margin - top};
     // Ticks depend on the size of the plot and the plot's size on their labels: the second round has the labels of the first.
     next.plot = next.area;
     for (int round = 0; round < 2; ++round) {
       const Axes::Room room = out.axes.room(next.plot.width, next.plot.height);
-      const int right = std::max(room.right, marks_room(names));
-      next.plot = {left + room.left, top + title + room.top, share - room.left - right, next.area.height - title - room.top - room.bottom};
+      next.plot = {left + room.left, top + title + room.top, share - room.left - room.right, next.area.height - title - room.top - room.bottom};
       if (next.plot.width < px(kSmallestPlotPt) || next.plot.height < px(kSmallestPlotPt)) no_room();
     }
-    out.panels.push_back(next);
+    left = next.area.right() + px(kBetweenPt);
   }
   return out;
 }

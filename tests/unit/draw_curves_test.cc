@@ -265,6 +265,17 @@ TEST(Curves, PanelsAreChosenByTheNumberOfMethodsAndParts) {
   EXPECT_THROW(lay_out_curves(curve_set(8, 1), {}, font()), Error);
 }
 
+TEST(Curves, AMarkOfOnePanelLeavesThePlotsAsWideAsOneAnother) {
+  CurvesStyle style;
+  style.marks = {{50, "a mark of the unseen pairs alone", "unseen"}};
+  const CurvesLayout layout = lay_out_curves(curve_set(2, 2), style, font());
+  ASSERT_EQ(layout.panels.size(), 2u);
+  const CurvesLayout::Panel &seen = layout.panels[0], &unseen = layout.panels[1];
+  EXPECT_EQ(seen.plot.width, unseen.plot.width);
+  EXPECT_GT(unseen.area.right() - unseen.plot.right(), seen.area.right() - seen.plot.right() + layout.mark_space);
+  EXPECT_NEAR(unseen.area.right(), layout.width - layout.margin, 1);  // half of a pixel is none
+}
+
 TEST(Curves, CaptionSaysWhatTheBandIs) {
   const auto caption = [](int runs, Band band) {
     CurvesStyle style;
