@@ -26,11 +26,18 @@ void for_curves(const CurveSet& set, Visit visit) {
       if (curve) visit(*curve);
 }
 
+// A run of whole updates ends a little before the round number of states that was meant: the axis has that number, where it is less than 1 % away.
+double round_end(double high) {
+  const double unit = std::pow(10, std::floor(std::log10(high)) - 1), up = std::ceil(high / unit) * unit;
+  return up < 1.01 * high ? up : high;
+}
+
 Axis x_axis(const CurveSet& set, const CurvesStyle& style) {
   double low = style.x.low, high = style.x.high;
   if (std::isnan(high)) {
     high = 0;
     for_curves(set, [&](const MeanCurve& curve) { high = std::max(high, curve.x.back()); });
+    if (high > 0) high = round_end(high);
   }
   if (std::isnan(low)) low = 0;
   if (high <= low) high = low + std::max(1.0, std::abs(low));

@@ -265,6 +265,25 @@ TEST(Curves, PanelsAreChosenByTheNumberOfMethodsAndParts) {
   EXPECT_THROW(lay_out_curves(curve_set(8, 1), {}, font()), Error);
 }
 
+TEST(Curves, TheAxisEndsAtTheRoundNumberThatTheLongestRunAlmostReaches) {
+  // Where the axis ends, by a run's last point.
+  const auto end = [](double last, double given) {
+    CurvesStyle style;
+    style.x.high = given;
+    const CurvesLayout layout = lay_out_curves(average_runs({{"", {{{{last / 2, last}, {3, 4}}}}}}, {""}, Band::kSd), style, font());
+    const Box plot = layout.panels[0].plot;
+    const double left = layout.axes.place(plot, 0, 0).x, right = layout.axes.place(plot, last, 0).x;
+    return last * plot.width / (right - left);
+  };
+  const double chosen = std::nan("");
+  EXPECT_NEAR(end(1999872, chosen), 2e6, 1);
+  EXPECT_NEAR(end(9999872, chosen), 1e7, 1);
+  EXPECT_NEAR(end(28.9, chosen), 29, 1e-6);
+  EXPECT_NEAR(end(19531, chosen), 19531, 1e-3);  // 2.4 % short of 20,000
+  EXPECT_NEAR(end(5000, chosen), 5000, 1e-3);
+  EXPECT_NEAR(end(1999872, 1999900), 1999900, 1);
+}
+
 TEST(Curves, AMarkOfOnePanelLeavesThePlotsAsWideAsOneAnother) {
   CurvesStyle style;
   style.marks = {{50, "a mark of the unseen pairs alone", "unseen"}};
