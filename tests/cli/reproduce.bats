@@ -77,6 +77,18 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     ! grep -q '^train\|^eval\|^expert' calls || complain "done again: $(cat calls)"
 }
 
+@test "reproduce: a page has the seeds asked for, whatever else lies in the folder" {
+    stand_ins
+    mkdir results
+    touch results/full-2.log results/full-2.tsv
+    scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results
+    ! grep -e '-2\.' calls || complain "a seed that was not asked for"
+    grep -q '^render curves .* full=full-1.log no-env=no-env-1.log' calls
+    grep -q '^matrix table .* full-1.tsv no-env-1.tsv' calls
+    scripts/reproduce figure3 --budget 1e6 --seeds 2 -o results
+    grep -q '^render curves .* full=full-1.log,full-2.log ' calls
+}
+
 @test "reproduce: what the grid has chosen for a method is taken" {
     stand_ins
     mkdir -p results/grid
