@@ -118,7 +118,7 @@ END
     scripts/reproduce grid --budget 1e6 -o results
     cut -f 1-3 results/choice.tsv >got
     printf '%s\t%s\t%s\n' mlp '--lr 0.002 --embedding-sd 0.3 --weight-decay 0.001' 0.0700 \
-        modulenet '--lr 0.002 --dropout 0 --weight-decay 0.0001' 0.0300 mtl '--lr 0.001' 0.0500 \
+        modulenet '--lr 0.002 --dropout 0 --weight-decay 0.0001' 0.0300 mtl '--lr 0.001 --embedding-sd 1' 0.0500 \
         sf '--lr 0.002 --sf-loss td --embedding-sd 0.1 --reward-loss 0.01 --weight-decay 0.001' 0.0000 synpo '--lr 0.001' 0.5000 | cmp - got
     [ "$(trained | sort -u | wc -l)" = "$(wc -l <results/runs)" ]
 }
