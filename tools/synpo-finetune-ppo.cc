@@ -94,9 +94,9 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .real(0, "epsilon", "X", "RMSProp's epsilon", ppo.optimiser.epsilon, 0, 1)
       .real(0, "weight-decay", "X", "L2 term added to the gradient", ppo.optimiser.weight_decay, 0, 1)
       .real(0, "value-loss", "X", "weight of the value's loss", ppo.value_loss, 0, 1e6)
-      .real(0, "reward-loss", "X", "weight of reward prediction (the checkpoint's)", ppo.losses.reward, 0, 1e6)
-      .real(0, "env-loss", "X", "weight of environment disentanglement (the checkpoint's)", ppo.losses.env, 0, 1e6)
-      .real(0, "task-loss", "X", "weight of task disentanglement (the checkpoint's)", ppo.losses.task, 0, 1e6);
+      .real(0, "reward-loss", "X", "weight of reward prediction; the checkpoint's, or with --init", ppo.losses.reward, 0, 1e6)
+      .real(0, "env-loss", "X", "weight of environment disentanglement; the checkpoint's, or with --init", ppo.losses.env, 0, 1e6)
+      .real(0, "task-loss", "X", "weight of task disentanglement; the checkpoint's, or with --init", ppo.losses.task, 0, 1e6);
 }
 
 }  // namespace

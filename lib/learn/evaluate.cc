@@ -130,9 +130,12 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
 
 RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
                                       int episodes) {
+  std::vector<bool> env_met(size_t(world.envs())), task_met(size_t(world.task_count()));
+  for (const EnvTask& pair : model.seen) env_met[size_t(pair.env)] = task_met[size_t(pair.task)] = true;
   std::vector<EnvTask> groups[2];  // unseen, seen
   for (int env = 0; env < world.envs(); ++env)
-    for (int task = 0; task < world.task_count(); ++task) groups[model.is_seen({env, task})].push_back({env, task});
+    for (int task = 0; task < world.task_count(); ++task)
+      if (env_met[size_t(env)] && task_met[size_t(task)]) groups[model.is_seen({env, task})].push_back({env, task});
   double success[2], reward[2];
   for (int seen = 0; seen < 2; ++seen) {
     success[seen] = reward[seen] = std::nan("");

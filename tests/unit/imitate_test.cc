@@ -296,5 +296,15 @@ TEST(Imitation, EvaluatesSampledPairs) {
   EXPECT_FALSE(std::isnan(none.seen_success));
 }
 
+TEST(Imitation, UnseenPairsAreOfEnvironmentsAndTasksThatWereSeen) {
+  const std::vector<EnvTask> block = {{3, 0}, {3, 1}, {5, 0}, {5, 1}}, corner = {{3, 0}, {3, 1}, {5, 0}};
+  for (const auto& seen : {block, corner}) {
+    Session session(expert_lines(seen, 10));
+    session.start(whole_trajectories(), 2, seen);
+    session.update(1);
+    EXPECT_EQ(std::isnan(session.run->evaluate_sample(2).unseen_success), seen == block);
+  }
+}
+
 }  // namespace
 }  // namespace synpo
