@@ -12,7 +12,9 @@ OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcode
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
 LIB_SRC  := $(wildcard lib/*/*.cc)
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
-TARGETS  := plain $(if $(filter x86_64,$(shell $(CXX) -dumpmachine | cut -d- -f1)),avx2 avx512 amx)
+# What the compiler is for; this machine where there is none yet (make deps all).
+MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
+TARGETS  := plain $(if $(filter x86_64,$(MACHINE)),avx2 avx512 amx)
 TARGET_avx2   := -mavx2 -mfma
 TARGET_avx512 := $(TARGET_avx2) -mavx512f -mavx512bw -mavx512dq -mavx512vl
 TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GCC 12 warns of its own header
@@ -31,7 +33,7 @@ BENCH_PACKAGES := python3-torch libopenblas0-openmp
 # Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs them.
 MAKEFLAGS += -j$(shell nproc)
 ifneq ($(filter deps,$(MAKECMDGOALS)),)
-$(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ): | deps
+$(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ) $(B)/tests/bench/synpo-bench.o: | deps
 endif
 ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
 bench check-torch: | deps-bench
