@@ -100,17 +100,21 @@ struct Rows {
     });
   }
 
+  // In as many sums as the widest target has lanes of floats, what is left over beside zeros, so that all with fused products come to the same bits.
   static T dot(int n, const T* a, const T* b) {
-    typename Lanes<T>::Vec sums{};
+    constexpr int kSums = 16;
+    typedef T Sums __attribute__((vector_size(kSums * sizeof(T))));
+    Sums sums{};
+    const int whole = n - n % kSums;
+    for (int i = 0; i < whole; i += kSums) sums += load<Sums>(a + i) * load<Sums>(b + i);
+    if (whole < n) {
+      Sums rest_a{}, rest_b{};
+      std::memcpy(&rest_a, a + whole, size_t(n - whole) * sizeof(T));
+      std::memcpy(&rest_b, b + whole, size_t(n - whole) * sizeof(T));
+      sums += rest_a * rest_b;
+    }
     T sum = 0;
-    for_lanes<T>(n, [&](auto tag, int c) {
-      using V = decltype(tag);
-      if constexpr (sizeof(V) > sizeof(T))
-        sums += load<V>(a + c) * load<V>(b + c);
-      else
-        sum += a[c] * b[c];
-    });
-    for (int i = 0; i < Lanes<T>::kCount; ++i) sum += sums[i];
+    for (int i = 0; i < kSums; ++i) sum += sums[i];
     return sum;
   }
 

@@ -196,6 +196,10 @@ TEST(Gemm, WidthOfTheVectorsDoesNotShowInTheBits) {
     kernels->multiply(Op::kAsIs, kM, kN, kK, a.data(), kK, packed.data(), to.data(), kN, false);
   }
   EXPECT_EQ(c[0], c[1]);
+  for (int n = 0; n <= kK; ++n) {
+    EXPECT_EQ(narrow->dot(n, a.data(), b.data()), wide->dot(n, a.data(), b.data())) << n;
+    EXPECT_EQ(narrow->sum_of_squares(size_t(n), a.data()), wide->sum_of_squares(size_t(n), a.data())) << n;
+  }
 }
 
 template <class T>
