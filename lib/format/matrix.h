@@ -24,6 +24,12 @@ struct MatrixRow {
   double reward = 0;          // sums over the episodes
   int64_t length = 0;
   std::string part;           // empty where the file has no such column
+
+  // Whether anybody took these numbers: no episode is without a step, and one that failed ended in some way.
+  bool knows_failures() const { return wrong > 0 || timeouts > 0 || successes == episodes; }
+  bool knows_length() const { return length > 0; }
+  bool knows_reward() const { return length > 0 || reward != 0; }
+
   std::vector<std::string> extra;  // fields of the columns that this build does not know, as they came
 };
 

@@ -144,6 +144,11 @@ Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start,
       for (const PairTally& pair : group.runs[r].pairs) {
         const auto [at, fresh] = place.try_emplace(concat(pair.name(), '\t', pair.seen), paired.pairs.size());
         if (fresh) paired.pairs.push_back({pair.env, pair.task, pair.seen, pair.part, 0, 0, 0, 0, {}});
+        std::string& part = paired.pairs[at->second].part;
+        if (part.empty()) part = pair.part;
+        if (!pair.part.empty() && pair.part != part)
+          fail(Exit::kData, a.name, " and ", b.name, ": pair ", quoted(pair.env), ", ", quoted(pair.task), " is in part ", quoted(part), " and in ",
+               quoted(pair.part));
         paired.a.resize(paired.pairs.size());
         paired.b.resize(paired.pairs.size());
         values[at->second].push_back({number[r], double(pair.tally.successes) / double(pair.tally.episodes)});

@@ -40,7 +40,8 @@ struct Comparison {
   BootstrapPlan plan;
 };
 
-// Rows with the same eval_seed, environment, task and range of episodes began in the same states. A pair is compared on those of its
+// Rows with the same eval_seed, environment, task and range of episodes began in the same states where both worlds have the same environments in the same
+// order. Parts may stand in one of the two alone; different ones are kData. A pair is compared on those of its
 // rows whose range both sides have, or on all of them with `any_start`; a pair that is seen on one side and unseen on the other is
 // left out. Both must be merged, of one method each and of one world together; kData otherwise, or when no pair is left.
 Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start, const BootstrapPlan& plan);

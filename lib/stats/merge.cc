@@ -110,7 +110,9 @@ class Merger {
   }
 
   static bool follows(const MatrixRow& before, const MatrixRow& row) {
-    return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode && before.extra == row.extra;
+    return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode && before.extra == row.extra &&
+           before.knows_failures() == row.knows_failures() && before.knows_length() == row.knows_length() &&
+           before.knows_reward() == row.knows_reward();
   }
 
   std::vector<MatrixSource>& sources_;

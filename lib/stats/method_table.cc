@@ -18,7 +18,8 @@ TableCell cell_of(const Group& group, const std::string& subset, const MeasureKi
   PairValues values;
   std::unordered_map<std::string, size_t> place;
   std::vector<double> means, all;
-  int64_t k = 0;
+  int64_t k = 0, episodes_of_first = 0;
+  bool alike = true;  // as many episodes of every pair, so that k in n is the mean
   for (size_t r = 0; r < group.runs.size(); ++r) {
     std::vector<double> of_run;
     for (const PairTally& pair : group.runs[r].pairs) {
@@ -27,6 +28,8 @@ TableCell cell_of(const Group& group, const std::string& subset, const MeasureKi
       if (fresh) values.emplace_back();
       of_run.push_back(measure.value(pair.tally));
       values[at->second].push_back({uint32_t(r), of_run.back()});
+      if (cell.episodes == 0) episodes_of_first = pair.tally.episodes;
+      alike &= pair.tally.episodes == episodes_of_first;
       cell.episodes += pair.tally.episodes;
       if (measure.count) k += measure.count(pair.tally);
     }
@@ -41,7 +44,7 @@ TableCell cell_of(const Group& group, const std::string& subset, const MeasureKi
   cell.interval = {NAN, NAN};
   if (std::isnan(cell.over_runs.mean)) return cell;
   cell.interval = bootstrap_mean(values, group.runs.size(), plan);
-  if (std::isnan(cell.interval.low) && measure.count) {
+  if (std::isnan(cell.interval.low) && measure.count && alike) {
     cell.interval = wilson(k, cell.episodes);
     cell.wilson = true;
   }
@@ -92,8 +95,9 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
       row.push_back(kind.rate ? percent(cell.iqm, kind.digits) : decimal(cell.iqm, kind.digits));
       row.push_back(range_text(cell.interval, kind) + (cell.wilson ? " w" : ""));
       starred |= cell.wilson;
-      resampled |= !cell.wilson && !std::isnan(cell.interval.low);
-      few |= resampled && cell.runs < kFewRuns;
+      const bool drawn = !cell.wilson && !std::isnan(cell.interval.low);
+      resampled |= drawn;
+      few |= drawn && cell.runs < kFewRuns;
     }
     rows.push_back(std::move(row));
   }

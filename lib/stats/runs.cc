@@ -15,19 +15,26 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double ratio(double sum, int64_t count) { return count > 0 ? sum / double(count) : kNone; }
 
-// No episode is without a step, and one that failed ended in some way, so zeros that cannot be are numbers that nobody took.
-bool knows_failures(const Tally& t) { return t.wrong > 0 || t.timeouts > 0 || t.successes == t.episodes; }
-
 double success(const Tally& t) { return ratio(double(t.successes), t.episodes); }
-double length(const Tally& t) { return t.length > 0 ? ratio(double(t.length), t.episodes) : kNone; }
-double reward(const Tally& t) { return t.length > 0 || t.reward != 0 ? ratio(t.reward, t.episodes) : kNone; }
-double wrong(const Tally& t) { return knows_failures(t) ? ratio(double(t.wrong), t.episodes) : kNone; }
-double timeouts(const Tally& t) { return knows_failures(t) ? ratio(double(t.timeouts), t.episodes) : kNone; }
+double length(const Tally& t) { return t.unknown_lengths == 0 ? ratio(double(t.length), t.episodes) : kNone; }
+double reward(const Tally& t) { return t.unknown_rewards == 0 ? ratio(t.reward, t.episodes) : kNone; }
+double wrong(const Tally& t) { return t.unknown_failures == 0 ? ratio(double(t.wrong), t.episodes) : kNone; }
+double timeouts(const Tally& t) { return t.unknown_failures == 0 ? ratio(double(t.timeouts), t.episodes) : kNone; }
 
 }  // namespace
 
-void Tally::add(const Tally& other) { add_counts(*this, other); }
-void Tally::add(const MatrixRow& row) { add_counts(*this, row); }
+void Tally::add(const Tally& other) {
+  add_counts(*this, other);
+  unknown_failures += other.unknown_failures;
+  unknown_lengths += other.unknown_lengths;
+  unknown_rewards += other.unknown_rewards;
+}
+void Tally::add(const MatrixRow& row) {
+  add_counts(*this, row);
+  if (!row.knows_failures()) unknown_failures += row.episodes;
+  if (!row.knows_length()) unknown_lengths += row.episodes;
+  if (!row.knows_reward()) unknown_rewards += row.episodes;
+}
 
 std::vector<uint64_t> Group::seeds() const {
   std::vector<uint64_t> all;

@@ -12,6 +12,8 @@ namespace synpo {
 struct Tally {
   int64_t episodes = 0, successes = 0, wrong = 0, timeouts = 0, length = 0;
   double reward = 0;
+  // Episodes of rows that say nothing of how they failed, how long they took, what they earned.
+  int64_t unknown_failures = 0, unknown_lengths = 0, unknown_rewards = 0;
   void add(const Tally& other);
   void add(const MatrixRow& row);
 };
@@ -52,7 +54,7 @@ std::string heading(const std::string& method, const std::string& world, int64_t
 bool is_subset(const std::string& name);
 bool belongs(const PairTally& pair, const std::string& subset);
 
-// Something per episode. NaN where the matrix does not say: a column missing in one made by hand is 0 throughout.
+// Something per episode. NaN where the matrix does not say it of all of them: a column missing in one made by hand is 0 throughout.
 struct MeasureKind {
   const char* name;
   double (*value)(const Tally&);

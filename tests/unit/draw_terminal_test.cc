@@ -35,6 +35,13 @@ TEST(Terminal, WithoutColour) {
             "unseen (*): 99.9 % of 1000 episodes, 1 pair\n");
 }
 
+TEST(Terminal, GroupsWithoutPairsAreNotNamed) {
+  HeatTable with_empty = table();
+  with_empty.groups.push_back({"rest"});
+  for (const TerminalColour colour : {TerminalColour::kNone, TerminalColour::kTrue})
+    EXPECT_EQ(terminal_matrix(with_empty, find_scheme("safe"), colour, 10), terminal_matrix(table(), find_scheme("safe"), colour, 10));
+}
+
 TEST(Terminal, BlocksShrinkToTheWidth) {
   const auto second_line = [](int width) {
     const std::string text = terminal_matrix(table(), find_scheme("safe"), TerminalColour::kTrue, width);

@@ -120,6 +120,7 @@ TEST(Replay, RefusesWhatIsNotThisWorlds) {
   EXPECT_EQ(refused([](Trajectory& t) { t.task = "R-R"; }), "65 unknown task 'R-R'");
   EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }), "65 env 'map4' is not the one of that name here (other maps? see -w)");
   EXPECT_EQ(refused([](Trajectory& t) { t.start.erase("G"); }), "65 field 'start': no place for 'G'");
+  EXPECT_EQ(refused([](Trajectory& t) { t.start["Z"] = t.start["B"]; }), "65 field 'start': found 7 places, expected the agent's and those of 5 treasures");
   EXPECT_EQ(refused([](Trajectory& t) { t.start["B"] = {0, 3}; }), "65 field 'start': 'B' at row 0, column 3 is not on the floor of map3");
   EXPECT_EQ(refused([](Trajectory& t) { t.start["agent"] = {1, 1 << 20}; }),
             "65 field 'start': 'agent' at row 1, column 1048576 is not on the floor of map3");

@@ -2,6 +2,7 @@
 
 #include "stats/interval.h"
 #include "stats/merge.h"
+#include "stats/runs.h"
 #include "stats/summary.h"
 #include "table_helpers.h"
 
@@ -204,6 +205,24 @@ TEST(Summary, LeavesOutWhatAHandMadeMatrixDoesNotSay) {
   const SubsetSummary all = summarise(matrix({bare})).at(0).subsets.at(2);
   EXPECT_DOUBLE_EQ(all.success.pooled, 0.75);
   for (const Measure* measure : {&all.reward, &all.length, &all.wrong, &all.timeouts}) EXPECT_TRUE(std::isnan(measure->pooled));
+}
+
+TEST(Summary, WhatSomeRowsDoNotSayIsNotKnownOfAll) {
+  MatrixRow bare = row("r2", "e", true, 0, 4, 3);
+  bare.timeouts = 0;
+  const Matrix m = matrix({row("r1", "e", true, 0, 4, 3, 1, 2, 8), bare});
+  Tally tally;
+  for (const MatrixRow& one : m.rows) tally.add(one);
+  EXPECT_DOUBLE_EQ(find_measure("success").value(tally), 0.75);
+  for (const char* name : {"reward", "length", "wrong", "timeouts"}) EXPECT_TRUE(std::isnan(find_measure(name).value(tally))) << name;
+  const SubsetSummary all = summarise(m).at(0).subsets.at(2);
+  for (const Measure* measure : {&all.reward, &all.length, &all.wrong, &all.timeouts}) EXPECT_TRUE(std::isnan(measure->pooled));
+}
+
+TEST(Merge, KeepsRowsApartOfWhichOneSaysLess) {
+  MatrixRow bare = row("r1", "e", true, 4, 4, 3);
+  bare.timeouts = 0;
+  EXPECT_EQ(merge_matrices({{"a", matrix({row("r1", "e", true, 0, 4, 3, 1, 2, 8), bare})}}).rows.size(), 2u);
 }
 
 TEST(Summary, TableHasNoNumberWhereThereIsNone) {

@@ -207,7 +207,23 @@ TEST(MethodTable, HandComputed) {
 // Episodes differ in number: every pair counts alike, as the text says.
 TEST(MethodTable, PairsCountAlike) {
   const Matrix m = matrix({row("r1", 1, "e", "t", true, 90, 100), row("r1", 1, "f", "t", true, 1, 10)});
-  EXPECT_DOUBLE_EQ(tabulate(m, {"seen"}, success(), {}).lines[0].cells[0].over_runs.mean, 0.5);
+  const TableCell cell = tabulate(m, {"seen"}, success(), {}).lines[0].cells[0];
+  EXPECT_DOUBLE_EQ(cell.over_runs.mean, 0.5);
+  EXPECT_TRUE(std::isnan(cell.interval.low)) << "Wilson's, of 91 in 110, is not about this mean";
+  EXPECT_FALSE(cell.wilson);
+}
+
+TEST(MethodTable, OnlyABootstrapOfFewRunsIsTooNarrow) {
+  std::vector<MatrixRow> rows = {row("m", 1, "e", "t", true, 5, 10, "mlp")};
+  for (uint64_t seed = 1; seed <= 12; ++seed) rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 3 + seed % 4));
+  const auto warns = [&] {
+    return method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false).find("too narrow") != std::string::npos;
+  };
+  EXPECT_FALSE(warns()) << "twelve runs, and one with Wilson's";
+  std::swap(rows.front(), rows.back());
+  EXPECT_FALSE(warns());
+  rows.resize(8);
+  EXPECT_TRUE(warns());
 }
 
 TEST(MethodTable, RunsWithoutAFailure) {
@@ -286,6 +302,14 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
             "65 a.tsv and b.tsv have no pair with the same start states (eval_seed, first_episode, episodes) and the same seen; "
             "--any-start compares other start states, too");
   EXPECT_EQ(thrown([&] { compare(a, b, true, {}); }), "nothing thrown");
+  MatrixSource in_p = a;
+  in_p.matrix.rows[0].part = "P";
+  b.matrix.rows[0].part = "Q";
+  EXPECT_EQ(thrown([&] { compare(in_p, b, true, {}); }), "65 a.tsv and b.tsv: pair 'e', 't' is in part 'P' and in 'Q'");
+  for (const auto& [one, other] : {std::pair(a, in_p), std::pair(in_p, a)}) {
+    const Comparison c = compare(one, other, true, {});
+    EXPECT_EQ(c.subsets.back().name, "P") << "the part that one side has";
+  }
 }
 
 TEST(Margins, WorstFirst) {
