@@ -123,16 +123,29 @@ END
     [ "$(trained | sort -u | wc -l)" = "$(wc -l <results/runs)" ]
 }
 
+@test "reproduce: a folder's results are of one budget and one number of episodes" {
+    stand_ins
+    scripts/reproduce figure3 --budget 1e6 --seeds 1 -n 7 -o results
+    for words in "--budget 2e6 -n 7" "--budget 1e6 -n 8"; do
+        # shellcheck disable=SC2086
+        scripts/reproduce figure3 $words --seeds 2 -o results 2>err && complain "$words: taken"
+        grep -q '^reproduce: found .* are of --budget 1e6 -n 7: ' err
+    done
+    rm calls
+    scripts/reproduce figure3 --budget 1e6 --seeds 2 -n 7 -o results
+    [ "$(trained | wc -l)" = 5 ]
+}
+
 @test "reproduce: nonsense is wrong usage, and says what is right" {
     stand_ins
-    for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" "table4 --budget 12" "table4 --budget some"; do
+    for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" "table4 --budget 12" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
         status=0
         # shellcheck disable=SC2086
         scripts/reproduce $words 2>err || status=$?
         [ "$status" = 64 ] || complain "$words: exit code $status, expected 64: $(cat err)"
         grep -q '^reproduce: .' err
     done
-    [ ! -e calls ] || ! grep -q '^train' calls
+    ! grep -qs '^train' calls || complain "trained: $(trained)"
     rm build/synpo-train
     status=0
     PATH=/usr/bin:/bin scripts/reproduce table4 2>err || status=$?
