@@ -52,7 +52,7 @@ int embedding(int argc, char** argv) {
   options.call(0, "kind", "KIND", "pca: two principal components; distance: matrices [pca]", one_of(kind, "pca", "distance"))
       .call(0, "metric", "NAME", "distances: cosine or euclidean [cosine]", one_of(metric, "cosine", "euclidean"))
       .flag(0, "all", "environments and tasks of no seen pair too", all)
-      .text(0, "title", "TEXT", "title above the picture", style.title);
+      .call(0, "title", "TEXT", "title above the picture", drawn(style.title));
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
   if (options.given("metric") && kind != "distance") fail(Exit::kUsage, "--metric is for --kind distance");

@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/folder.h"
+#include "base/signals.h"
 #include "draw/episode_picture.h"
 #include "draw/kitchen_episode_picture.h"
 #include "draw/terminal_path.h"
@@ -62,6 +63,7 @@ Drawing kitchen_drawing(Input& input, int64_t line, const EpisodeStyle& style, c
 void write_frames(const std::string& path, const Drawing& drawing) {
   OutputFolder folder(path);
   for (int i = 0; i <= drawing.steps; ++i) {
+    stop_if_asked();
     char name[32];
     std::snprintf(name, sizeof name, "%04d.png", i);
     folder.write(name, drawing.frame(i).png());
@@ -72,6 +74,7 @@ void write_frames(const std::string& path, const Drawing& drawing) {
 void write_video(const std::string& path, double rate, const Drawing& drawing) {
   std::unique_ptr<Video> video;
   for (int i = 0; i <= drawing.steps; ++i) {
+    stop_if_asked();
     const Canvas frame = drawing.frame(i);
     if (!video) video = std::make_unique<Video>(path, rate, frame.width(), frame.height());
     video->add(frame);
@@ -93,7 +96,7 @@ int episode(int argc, char** argv) {
   options.text('w', "world", "WORLD", "gridworld, gridworld:DIR for the map files of a folder, or kitchen", world_name)
       .integer(0, "line", "N", "the episode's line", line, 1, INT64_MAX)
       .integer(0, "strip", "N", "pictures of what the agent saw: the first, picks, the last, others between; 0: none", style.strip, 0, kStepLimit)
-      .text(0, "title", "TEXT", "title instead of environment and task", style.title)
+      .call(0, "title", "TEXT", "title instead of environment and task", drawn(style.title))
       .section("instead of the picture")
       .flag(0, "ansi", "the path through a maze as text, in coloured blocks on a terminal that has colours", ansi)
       .text(0, "frames", "DIR", "a folder of numbered PNG files, one for the start and one after every step", frames)
@@ -107,6 +110,7 @@ int episode(int argc, char** argv) {
   if (draws_films && options.given("output")) fail(Exit::kUsage, "--frames and --video take the place of the picture, but -o is given");
   if (options.given("rate") && video.empty()) fail(Exit::kUsage, "--rate is for --video");
   style.scale = picture.scale;
+  if (draws_films) catch_stop_signals();
 
   std::unique_ptr<Output> output;
   if (!draws_films) output = std::make_unique<Output>(picture.output, ansi ? Output::Kind::kText : Output::Kind::kBinary, picture.force);

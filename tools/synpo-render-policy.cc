@@ -44,7 +44,7 @@ int policy(int argc, char** argv) {
       .integer(0, "episode", "N", "number of the episode under this seed", episode, 0, UINT32_MAX)
       .integer(0, "stage", "N", "1: on the way to the first treasure; 2: to the second; 0: both side by side", stage, 0, 2)
       .integer(0, "pictures", "N", "pictures of the agent there that it remembers; 0: 1 in stage 1, 4 in stage 2", pictures, 0, kHistory)
-      .text(0, "title", "TEXT", "title instead of maze and task", style.title);
+      .call(0, "title", "TEXT", "title instead of maze and task", drawn(style.title));
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
   style.scale = picture.scale;

@@ -118,6 +118,8 @@ WorldState GridSet::start_state(int env, const StartPlaces& places) const {
     for (int j = 0; j < i; ++j)
       if (start.now.treasures[i] == start.now.treasures[j]) fail(Exit::kData, "field 'start': two treasures on one cell");
   }
+  if (places.size() != 1 + kTreasures)
+    fail(Exit::kData, "field 'start': found ", places.size(), " places, expected the agent's and those of ", kTreasures, " treasures");
   return to_world_state(start);
 }
 

@@ -61,6 +61,21 @@ setup() {
     echo mine | cmp - full/file
 }
 
+@test "--frames, --video: stopped half way, nothing is left behind" {
+    for signal in INT TERM; do
+        for films in "--frames frames" "--video a.avi"; do
+            # shellcheck disable=SC2086
+            env --default-signal=INT synpo-render episode --scale 3 $films e.jsonl &
+            until ls | grep -q part; do kill -0 $! || complain "$films: done before it could be stopped"; done
+            kill -$signal $!
+            status=0
+            wait $! || status=$?
+            [ "$status" = $((128 + $(kill -l $signal))) ]
+            ! ls | grep 'part\|frames\|avi' || complain "left behind"
+        done
+    done
+}
+
 @test "--video: the same bytes twice; other formats 64, nowhere 73" {
     synpo-render episode --scale 0.5 --video a.avi e.jsonl
     synpo-render episode --scale 0.5 --video b.avi --frames frames e.jsonl

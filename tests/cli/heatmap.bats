@@ -125,7 +125,7 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
         says "UTF-8"
     done
     fails 64 synpo-render map --title $'\xff'
-    fails 64 synpo-render view --title $'\xc3'
+    for command in view episode embedding policy; do fails 64 synpo-render $command --title $'\xc3'; done
     cp m.tsv $'\xff.tsv'
     synpo-render heatmap $'\xff.tsv' >alone.png
     fails 64 synpo-render heatmap m.tsv $'\xff.tsv'
