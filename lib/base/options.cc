@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "base/io.h"
 #include "base/signals.h"
 
@@ -22,11 +23,6 @@ namespace synpo {
 const char kVersion[] = "0.1.0";
 
 namespace {
-
-std::string shortest(double value) {
-  char text[32];
-  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
-}
 
 double parse_real(const std::string& text) {
   double value = 0;

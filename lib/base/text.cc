@@ -1,5 +1,6 @@
 #include "base/text.h"
 
+#include <charconv>
 #include <cstdint>
 
 namespace synpo {
@@ -26,6 +27,11 @@ size_t first_bad_byte(std::string_view text) {
     i += length;
   }
   return std::string_view::npos;
+}
+
+std::string shortest(double value) {
+  char text[32];
+  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
 }  // namespace synpo

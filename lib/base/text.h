@@ -1,6 +1,7 @@
-// UTF-8: where it is well formed.
+// Text: UTF-8, where it is well formed; numbers, so that they come back as they were.
 #pragma once
 #include <cstddef>
+#include <string>
 #include <string_view>
 
 namespace synpo {
@@ -10,5 +11,8 @@ size_t utf8_length(std::string_view text, size_t at);
 
 // Where the first byte stands that is not part of valid UTF-8 or that is a control character other than a tab; npos when there is none.
 size_t first_bad_byte(std::string_view text);
+
+// The shortest decimal that reads back to the same bits.
+std::string shortest(double value);
 
 }  // namespace synpo

@@ -138,8 +138,7 @@ TsvWriter& TsvWriter::real(double value) {
     row_ += "NA";
     return *this;
   }
-  char digits[32];
-  row_.append(digits, std::to_chars(digits, digits + sizeof digits, value).ptr);
+  row_ += shortest(value);
   return *this;
 }
 

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "learn/gather.h"
 #include "nn/softmax.h"
 
@@ -18,6 +19,11 @@ const float* embedding_row(const Model& model, const char* name, int row, int wi
   return tensor ? model.parameters.data() + tensor->offset + size_t(row) * width : nullptr;
 }
 
+bool parse_whole(const std::string& text, double& value) {
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  return end.ec == std::errc() && end.ptr == text.data() + text.size();
+}
+
 }  // namespace
 
 std::map<std::string, std::string> PpoOptions::describe() const {
@@ -27,19 +33,19 @@ std::map<std::string, std::string> PpoOptions::describe() const {
           {"ppo.minibatches", concat(minibatches)},
           {"ppo.value-warm-up", concat(value_warm_up)},
           {"ppo.value-hidden", concat(value_hidden)},
-          {"ppo.value-loss", concat(value_loss)},
-          {"ppo.clip", concat(clipping.clip)},
-          {"ppo.entropy", concat(clipping.entropy)},
-          {"ppo.gradient-norm", concat(gradient_norm)},
-          {"ppo.discount", concat(gae.discount)},
-          {"ppo.lambda", concat(gae.lambda)},
-          {"ppo.lr", concat(optimiser.learning_rate)},
-          {"ppo.smoothing", concat(optimiser.smoothing)},
-          {"ppo.epsilon", concat(optimiser.epsilon)},
-          {"ppo.weight-decay", concat(optimiser.weight_decay)},
-          {"ppo.reward-loss", concat(losses.reward)},
-          {"ppo.env-loss", concat(losses.env)},
-          {"ppo.task-loss", concat(losses.task)}};
+          {"ppo.value-loss", shortest(value_loss)},
+          {"ppo.clip", shortest(clipping.clip)},
+          {"ppo.entropy", shortest(clipping.entropy)},
+          {"ppo.gradient-norm", shortest(gradient_norm)},
+          {"ppo.discount", shortest(gae.discount)},
+          {"ppo.lambda", shortest(gae.lambda)},
+          {"ppo.lr", shortest(optimiser.learning_rate)},
+          {"ppo.smoothing", shortest(optimiser.smoothing)},
+          {"ppo.epsilon", shortest(optimiser.epsilon)},
+          {"ppo.weight-decay", shortest(optimiser.weight_decay)},
+          {"ppo.reward-loss", shortest(losses.reward)},
+          {"ppo.env-loss", shortest(losses.env)},
+          {"ppo.task-loss", shortest(losses.task)}};
 }
 
 LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise) {
@@ -50,8 +56,7 @@ LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwis
       const auto found = from.options.find(key);
       if (found == from.options.end()) continue;
       const std::string& text = found->second;
-      const auto end = std::from_chars(text.data(), text.data() + text.size(), *weight);
-      if (end.ec != std::errc() || end.ptr != text.data() + text.size() || !(*weight >= 0 && *weight <= 1e6))
+      if (!parse_whole(text, *weight) || !(*weight >= 0 && *weight <= 1e6))
         fail(Exit::kData, "option '", key, "': found ", quoted(text), ", expected a number from 0 to 1e6");
     }
   return weights;
@@ -334,7 +339,10 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   for (const auto& [name, value] : options_.describe()) {
     const auto found = checkpoint.options.find(name);
     const std::string had = found == checkpoint.options.end() ? "none" : found->second;
-    if (had != value) fail(Exit::kData, "the run in the checkpoint has another --", name.substr(4), ": ", had, ", not ", value);
+    // Older checkpoints write the same number otherwise.
+    double a, b;
+    if (had != value && !(parse_whole(had, a) && parse_whole(value, b) && a == b))
+      fail(Exit::kData, "the run in the checkpoint has another --", name.substr(4), ": ", had, ", not ", value);
   }
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());
@@ -342,7 +350,8 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   lanes_.load(file, "train/ppo/lanes/");
   int64_t position[3];
   file.get("train/ppo/position", position, 3);
-  if (position[0] < 0 || position[1] < 0) fail(Exit::kData, "tensor 'train/ppo/position' is malformed");
+  constexpr int64_t kMost = int64_t(1) << 53;
+  if (position[0] < 0 || position[1] < 0 || position[0] > kMost || position[1] > kMost) fail(Exit::kData, "tensor 'train/ppo/position' is malformed");
   if (uint64_t(position[2]) != seed_) fail(Exit::kData, "the run in the checkpoint has seed ", position[2], ", not ", seed_);
   updates_ = position[0];
   steps_ = position[1];

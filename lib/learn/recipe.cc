@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "learn/model.h"
 
 namespace synpo {
@@ -87,11 +88,6 @@ constexpr MethodDefault kFastDefaults[] = {{"mlp", "embedding-sd", 0.3}, {"mlp",
 
 const Hyper& find(const std::string& name) {
   return *std::find_if(std::begin(kHypers), std::end(kHypers), [&](const Hyper& hyper) { return hyper.name == name; });
-}
-
-std::string shortest(double value) {
-  char text[32];
-  return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
 template <size_t N>
@@ -211,12 +207,11 @@ void RecipeOptions::add_to(Options& options) {
     recipe_ = name;
     recipe_given_ = true;
   });
-  static std::map<std::string, std::string> help;  // option tables keep pointers
   for (const Hyper& hyper : kHypers) {
     if (hyper.heading) options.section(hyper.heading);
     const std::string a = default_of(hyper, "fast"), b = default_of(hyper, "paper");
     const std::string shown = std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
-    options.call(0, hyper.name, "X", (help[hyper.name] = shown).c_str(), [this, &hyper](const std::string& text) {
+    options.call(0, hyper.name, "X", shown.c_str(), [this, &hyper](const std::string& text) {
       double value = 0;
       if (!parse(text, hyper, value)) throw std::invalid_argument(expectation(hyper));
       changes_[hyper.name] = value;
