@@ -26,7 +26,7 @@ int body(int argc, char** argv) {
       .text('p', "pairs", "FILE", "pairs to run, all its rows: TSV env, task (all pairs)", pairs_path)
       .text('w', "world", "WORLD", "kitchen:DIR, where the checkpoint's kitchens lie in files of their own", world_name)
       .integer('n', "count", "N", "episodes of every pair", count, 1, 100000000)
-      .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", first, 0, INT64_MAX / 2)
+      .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", first, 0, 1000000000000)
       .integer('s', "seed", "N", "seed of the start states, which are the same for every checkpoint", seed, 0, INT64_MAX)
       .real(0, "temperature", "T", "actions are drawn from the policy, its scores divided by T; 0: always the best one", temperature, 0, 1000)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)

@@ -57,6 +57,15 @@ struct Parallel::Pool {
   bool stop = false;
   std::exception_ptr error;
 
+  ~Pool() {
+    {
+      std::lock_guard lock(mutex);
+      stop = true;
+    }
+    wake.notify_all();
+    for (std::thread& worker : workers) worker.join();
+  }
+
   void take_shards(int thread) {
     [[maybe_unused]] const FlushDenormals flush;
     for (int shard; (shard = next.fetch_add(1)) < shards;) {
@@ -95,17 +104,10 @@ Parallel::Parallel(int threads) : pool_(std::make_unique<Pool>()) {
     cpu_set_t set;
     threads = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
   }
-  for (int i = 1; i < threads; ++i) pool_->workers.emplace_back([this, i] { pool_->loop(i); });
+  for (int i = 1; i < threads; ++i) pool_->workers.emplace_back([pool = pool_.get(), i] { pool->loop(i); });
 }
 
-Parallel::~Parallel() {
-  {
-    std::lock_guard lock(pool_->mutex);
-    pool_->stop = true;
-  }
-  pool_->wake.notify_all();
-  for (auto& worker : pool_->workers) worker.join();
-}
+Parallel::~Parallel() = default;
 
 int Parallel::threads() const { return int(pool_->workers.size()) + 1; }
 

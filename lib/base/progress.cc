@@ -11,8 +11,8 @@ namespace {
 constexpr double kBarEvery_s = 0.2, kLineEvery_s = 30;
 }
 
-Progress::Progress(std::string tool, std::string unit, uint64_t total, bool quiet)
-    : tool_(std::move(tool)), unit_(std::move(unit)), total_(total), quiet_(quiet), terminal_(isatty(2) != 0),
+Progress::Progress(std::string tool, std::string unit, uint64_t total, bool quiet, uint64_t first)
+    : tool_(std::move(tool)), unit_(std::move(unit)), total_(total), first_(first), quiet_(quiet), terminal_(isatty(2) != 0),
       start_(now()), last_(start_) {}
 
 Progress::~Progress() { finish(); }
@@ -26,13 +26,13 @@ void Progress::update(uint64_t done, const std::string& note) {
 }
 
 void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {
-  const double rate = done / std::max(elapsed_s, 1e-9);
+  const double rate = double(done - first_) / std::max(elapsed_s, 1e-9);
   std::string line = tool_ + ": ";
   if (total_ > 0) {
     const int percent = int(100 * std::min(done, total_) / total_);
     if (terminal_) line += "[" + std::string(percent / 5, '=') + std::string(20 - percent / 5, ' ') + "] ";
     line += std::to_string(percent) + " % of " + short_count(double(total_)) + " " + unit_;
-    if (done > 0 && done < total_) line += ", " + clock_time((total_ - done) / rate) + " left";
+    if (done > first_ && done < total_) line += ", " + clock_time((total_ - done) / rate) + " left";
   } else {
     line += short_count(double(done)) + " " + unit_;
   }

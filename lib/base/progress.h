@@ -9,8 +9,8 @@ namespace synpo {
 
 class Progress {
  public:
-  // total 0: unknown. `unit` names what is counted ("updates").
-  Progress(std::string tool, std::string unit, uint64_t total, bool quiet);
+  // total 0: unknown. `unit` names what is counted ("updates"); `first` of them were done before.
+  Progress(std::string tool, std::string unit, uint64_t total, bool quiet, uint64_t first = 0);
   ~Progress();
   void set_total(uint64_t total) { total_ = total; }
   // `note` is shown after the rate.
@@ -21,7 +21,7 @@ class Progress {
  private:
   void show(uint64_t done, const std::string& note, double elapsed_s);
   std::string tool_, unit_;
-  uint64_t total_;
+  uint64_t total_, first_;
   bool quiet_, terminal_, open_ = false;
   TimePoint start_, last_;
 };

@@ -13,6 +13,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 constexpr char kFormat[] = "synpo-checkpoint";
 constexpr char kTrainPrefix[] = "train/";
+constexpr int64_t kMostCount = int64_t(1) << 53;  // so that no run comes to the end of the type
 
 int64_t whole(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
@@ -87,6 +88,7 @@ Checkpoint read_checkpoint(Input& input) {
     c.window = int(std::min<int64_t>(whole(file, "window"), 1000));
     c.updates = whole(file, "updates");
     c.states = whole(file, "states");
+    if (std::max(c.updates, c.states) > kMostCount) fail(Exit::kData, "metadata 'updates', 'states': expected at most 2^53");
     c.seed = uint64_t(whole(file, "seed"));
     c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
     c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();

@@ -6,6 +6,7 @@
 #include <map>
 #include <mutex>
 
+#include "base/error.h"
 #include "learn/running_episode.h"
 #include "nn/loss.h"
 #include "nn/softmax.h"
@@ -47,6 +48,7 @@ void PairResult::add(const PairResult& other) {
 std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
                                  const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink,
                                  const std::function<void(size_t)>& progress) {
+  if (episodes.size() > size_t(INT32_MAX)) fail(Exit::kUsage, "found ", episodes.size(), " episodes, expected at most ", INT32_MAX);
   // Every thread keeps its lanes filled from one list, so that batches are small at its end alone.
   const int total = int(episodes.size()), actions = world.actions(), threads = parallel.threads();
   const size_t observation = world.observation_size(), most = size_t(std::clamp((total + threads - 1) / threads, 1, kLanes));

@@ -64,7 +64,7 @@ void Lanes::load(const SafeTensors& file, const std::string& prefix) {
   if (numbers.size() != lanes_.size() || rewards.size() != lanes_.size() || episodes.size() != lanes_.size() * RunningEpisode::kBytes) bad();
   for (size_t i = 0; i < lanes_.size(); ++i) {
     lanes_[i] = {0, {}, numbers[i], rewards[i]};
-    if (numbers[i] < 1 || numbers[i] == INT64_MAX || std::abs(rewards[i]) > INT32_MAX) bad();
+    if (numbers[i] < 1 || numbers[i] == INT64_MAX || rewards[i] < -INT32_MAX || rewards[i] > INT32_MAX) bad();
     if (!lanes_[i].episode.load(*world_, episodes.data() + i * RunningEpisode::kBytes)) bad();
     const auto pair = std::find(pairs_.begin(), pairs_.end(), lanes_[i].episode.pair);
     if (pair == pairs_.end()) bad();
