@@ -98,7 +98,7 @@ int adapt(int argc, char** argv) {
     stop_if_asked();
   }
   progress.finish();
-  output.write(format_checkpoint(adapted.checkpoint()));
+  output.write(format_checkpoint(adapted.checkpoint(checkpoint.options)));
   output.finish();
   return 0;
 }

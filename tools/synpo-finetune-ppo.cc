@@ -33,7 +33,7 @@ const std::vector<std::string> kColumns = {"update",  "states", "seconds", "stat
 // Updates until there are enough steps or a signal comes; returns the signal, or 0.
 int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
   TsvLog log(s.log, !s.resume.empty(), kColumns);
-  Progress progress("synpo-finetune", "steps", uint64_t(s.steps), s.quiet);
+  Progress progress("synpo-finetune", "steps", uint64_t(s.steps), s.quiet, uint64_t(run.steps()));
   const TimePoint start = now();
   TimePoint reported = start;
   int64_t reported_steps = run.steps();
@@ -71,7 +71,7 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
   s.minibatches = ppo.minibatches;
   s.value_warm_up = ppo.value_warm_up;
   options.text('c', "checkpoint", "FILE", "the trained policy", s.checkpoint)
-      .call(0, "steps", "N", "steps of all worlds together, such as 2e7 [2e7]", [&](const std::string& text) { s.steps = parse_count(text); })
+      .integer(0, "steps", "N", "steps of all worlds together, such as 2e7", s.steps, 1, INT64_MAX)
       .text('p', "pairs", "FILE", "the pairs to learn on: TSV env, task, seen (the seen ones of the checkpoint)", s.pairs)
       .text(0, "resume", "FILE", "go on from a checkpoint of --save, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)

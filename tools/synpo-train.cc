@@ -41,7 +41,8 @@ void check_length(TrajectoryStream& stream, const Settings& settings) {
 // Updates until the total is reached or a signal comes; returns the signal, or 0.
 int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, double limit_s) {
   RunLog log(settings.log, !settings.resume.empty());
-  Progress progress("synpo-train", "updates", uint64_t(run.total_updates()), settings.quiet);
+  const bool counted = run.total_updates() != kUnknown;
+  Progress progress("synpo-train", "updates", counted ? uint64_t(run.total_updates()) : 0, settings.quiet, uint64_t(run.updates()));
   const TimePoint start = now();
   TimePoint reported = start;
   const int64_t first = run.updates();
@@ -135,7 +136,11 @@ int body(int argc, char** argv) {
     run = std::make_unique<Imitation>(world, parallel, from);
   } else {
     run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.sight()), seen, uint64_t(s.seed));
-    if (!s.init.empty()) run->take_weights(load_model(load_checkpoint(s.init), world));
+    if (!s.init.empty()) {
+      Checkpoint init = load_checkpoint(s.init);
+      init.seen.clear();  // of its own world
+      run->take_weights(load_model(init, world));
+    }
   }
   if (options.given("count") || (!resumes && limit_s == 0)) run->set_total_updates(s.updates);
   if (!resumes && limit_s > 0) run->set_total_updates(kUnknown);
@@ -151,6 +156,7 @@ int body(int argc, char** argv) {
     TrajectoryStream stream(input, world, run->allowed(), run->window());
     stream.skip(run->stream_lines(), run->stream_hash());
     signal = train(*run, stream, s, limit_s);
+    if (run->updates() == 0) stop_if_asked();
     if (!s.save.empty()) write_file(s.save, format_checkpoint(run->checkpoint(true)));
     if (signal == 0) check_length(stream, s);
   }

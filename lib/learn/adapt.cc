@@ -26,6 +26,8 @@ bool starts_with_any(const std::string& name, std::initializer_list<const char*>
 }  // namespace
 
 Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed) {
+  if (const BatchNeeds needs = model.policy->needs(); needs.next || needs.planner_q)
+    fail(Exit::kUsage, "the loss that the policy was trained with needs more than demonstrations hold (sf: --sf-loss ce can be adapted)");
   Model wide;
   wide.method = model.method;
   wide.shape = model.shape;
@@ -193,8 +195,9 @@ Losses Adaptation::update() {
   return losses;
 }
 
-Checkpoint Adaptation::checkpoint() const {
+Checkpoint Adaptation::checkpoint(std::map<std::string, std::string> options) const {
   Checkpoint c = describe_model(model_, world_);
+  c.options = std::move(options);
   c.options["adapt.updates"] = concat(updates_);
   c.options["adapt.demonstrations"] = concat(demonstrations());
   add_tensors(c.file, "", model_.policy->parameters(), model_.parameters.data());

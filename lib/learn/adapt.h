@@ -4,7 +4,9 @@
 // New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi, and where embeddings alone are
 // learned, all that embedding_loss.h keeps.
 #pragma once
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
@@ -32,7 +34,7 @@ struct AdaptOptions {
 
 // The same model for a world of more environments: parameters are carried over by environment and task; embeddings of what no seen pair has are
 // drawn anew from `seed`. Throws kData where an environment of the checkpoint is another one in `world`, kUsage for a method without embeddings of
-// environments and tasks.
+// environments and tasks, and for a loss that needs more than demonstrations hold.
 Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed);
 
 class Adaptation {
@@ -48,7 +50,8 @@ class Adaptation {
 
   Losses update();
   const Model& model() const { return model_; }
-  Checkpoint checkpoint() const;
+  // `options`: those that the policy was trained with.
+  Checkpoint checkpoint(std::map<std::string, std::string> options) const;
 
  private:
   struct Span {

@@ -19,6 +19,15 @@ Model start_model(const World& world, const std::string& method, const Imitation
   return model;
 }
 
+// The model of a checkpoint that a run can go on from. Nothing is made as large as its options say before its tensors have been seen.
+Model resumable(const World& world, const Checkpoint& checkpoint) {
+  if (!checkpoint.file.has("train/position")) fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
+  Model saved = load_model(checkpoint, world);
+  if (describe_shape(saved.shape) != describe_shape(parse_options(checkpoint.options).shape(world)))
+    fail(Exit::kData, "the checkpoint's shape and options disagree");
+  return saved;
+}
+
 void copy(const Buffer<float>& from, Buffer<float>& to) {
   to.grow(from.size());
   std::copy_n(from.data(), from.size(), to.data());
@@ -41,11 +50,11 @@ Imitation::Imitation(const World& world, Parallel& parallel, const std::string& 
 }
 
 Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint)
+    : Imitation(world, parallel, checkpoint, resumable(world, checkpoint)) {}
+
+Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved)
     : Imitation(world, parallel, checkpoint.method, parse_options(checkpoint.options), {}, checkpoint.seed) {
   const SafeTensors& file = checkpoint.file;
-  if (!file.has("train/position")) fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
-  Model saved = load_model(checkpoint, world);
-  if (describe_shape(saved.shape) != describe_shape(model_.shape)) fail(Exit::kData, "the checkpoint's shape and options disagree");
   model_.seen = saved.seen;
   model_.updates = saved.updates;
   model_.states = saved.states;

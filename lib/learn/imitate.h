@@ -47,6 +47,7 @@ class Imitation {
   Checkpoint checkpoint(bool with_training_state) const;
 
  private:
+  Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved);
   void add_trajectories(TrajectoryStream& stream);
   // What is evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }

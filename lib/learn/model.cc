@@ -149,7 +149,23 @@ void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& lay
     file.add(prefix + tensor.name, {tensor.shape.begin(), tensor.shape.end()}, values + tensor.offset, tensor.size);
 }
 
+void check_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout) {
+  const auto text = [](const auto& shape) {
+    std::string sizes;
+    for (const auto size : shape) sizes += concat(sizes.empty() ? "" : ", ", size);
+    return "[" + sizes + "]";
+  };
+  for (const TensorInfo& tensor : layout.tensors()) {
+    const auto found = file.tensors.find(prefix + tensor.name);
+    if (found == file.tensors.end()) fail(Exit::kData, "no tensor '", prefix, tensor.name, "'");
+    const std::vector<int64_t>& shape = found->second.shape;
+    if (!std::equal(shape.begin(), shape.end(), tensor.shape.begin(), tensor.shape.end()))
+      fail(Exit::kData, "tensor '", prefix, tensor.name, "': found shape ", text(shape), ", expected ", text(tensor.shape));
+  }
+}
+
 void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values) {
+  check_tensors(file, prefix, layout);
   std::fill_n(values, layout.total(), 0.0f);
   for (const TensorInfo& tensor : layout.tensors()) {
     file.get(prefix + tensor.name, values + tensor.offset, tensor.size);
@@ -175,6 +191,8 @@ Model load_model(const Checkpoint& checkpoint, const World& world) {
   for (const auto& [env, task] : checkpoint.seen) rows.push_back({env, task, true, ""});
   model.seen = resolve_pairs(world, rows, false);
   model.policy = make_policy(model.method, model.shape);
+  // Before memory is taken for what a file only claims to hold.
+  for (const Layout* layout : {&model.policy->parameters(), &model.policy->statistics()}) check_tensors(checkpoint.file, "", *layout);
   get_tensors(checkpoint.file, "", model.policy->parameters(), model.parameters.grow(model.policy->parameters().total()));
   get_tensors(checkpoint.file, "", model.policy->statistics(), model.statistics.grow(model.policy->statistics().total()));
   return model;

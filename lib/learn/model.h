@@ -48,8 +48,10 @@ std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string&
 // Throws kData when tensors or world don't fit, or features come from another extractor.
 Model load_model(const Checkpoint& checkpoint, const World& world);
 
-// Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back.
+// Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back, where all are there and have their shapes:
+// kData otherwise.
 void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values);
+void check_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout);
 void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values);
 
 // Everything but the tensors.

@@ -16,6 +16,7 @@ setup() {
 @test "adapt: new pairs count as seen, and the checkpoint goes through the pipeline" {
     synpo-finetune adapt -q -c a.ckpt -n 3 <demos.jsonl >b.ckpt
     [ "$(described b.ckpt '.seen | length')" -eq 7 ]
+    [ "$(described b.ckpt '.options["task-loss"]')" = "$(described a.ckpt '.options["task-loss"]')" ]
     synpo-eval -q -p new.tsv -n 1 <b.ckpt >m
     [ "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { n += $at["seen"] } END { print n }' m)" -eq 2 ]
     for name in theta encoder.fc.weight alpha.hidden.weight encoder.stage1.block1.norm1.mean; do
@@ -62,6 +63,10 @@ setup() {
     synpo-train "${TINY[@]}" -m modulenet -n 1 --strip <e.jsonl >m.ckpt
     fails 64 synpo-finetune adapt -q -c m.ckpt <demos.jsonl
     says "nothing to adapt"
+    synpo-train "${TINY[@]}" -n 1 -p pairs.tsv -m sf --sf-loss td --strip <e.jsonl >sf.ckpt
+    fails 64 synpo-finetune adapt -q -c sf.ckpt <demos.jsonl
+    says "needs more than demonstrations hold"
+    fails 64 synpo-finetune ppo -q --steps 0 <a.ckpt
 }
 
 @test "ppo: resumed equals unbroken, 1 and 2 threads; the log has a row a report" {

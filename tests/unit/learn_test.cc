@@ -355,7 +355,9 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
   EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }), "65 pairs: unknown env 'map9' (other maps?)");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape.erase("basis"); }), "65 the shape has no 'basis'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 0; }), "65 shape 'hidden': found 0, expected a whole number from 1 to 65536");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 9; }), "65 tensor 'alpha.hidden.weight': found 64 values, expected 72");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 9; }), "65 tensor 'alpha.hidden.weight': found shape [8, 8], expected [8, 9]");
+  EXPECT_EQ(refused([](Checkpoint& c) { std::swap(c.file.tensors.at("embedding.task").shape[0], c.file.tensors.at("embedding.task").shape[1]); }),
+            "65 tensor 'embedding.task': found shape [4, 20], expected [20, 4]");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["actions"] = 6; }), "65 the network's shape does not fit the world");
   EXPECT_EQ(refused([](Checkpoint& c) { c.file.tensors.erase("theta"); }), "65 no tensor 'theta'");
   EXPECT_EQ(refused([](Checkpoint& c) {
