@@ -100,7 +100,8 @@ struct Rows {
     });
   }
 
-  // In as many sums as the widest target has lanes of floats, what is left over beside zeros, so that all with fused products come to the same bits.
+  // In as many sums as the widest target has lanes of floats, what is left over beside zeros, so that all with fused products come to the same
+  // bits.
   static T dot(int n, const T* a, const T* b) {
     constexpr int kSums = 16;
     typedef T Sums __attribute__((vector_size(kSums * sizeof(T))));

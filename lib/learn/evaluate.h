@@ -37,8 +37,8 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
                                  const std::function<void(size_t done)>& progress = nullptr);
 
 // Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones
-// at every call while no pair is seen that was not. Unseen are pairs of an environment and a task that other seen pairs have. NaN where there are no such pairs. The weights are given
-// apart: a run may evaluate others than those it learns with.
+// at every call while no pair is seen that was not. Unseen are pairs of an environment and a task that other seen pairs have. NaN where there are no such
+// pairs. The weights are given apart: a run may evaluate others than those it learns with.
 RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
                                       int episodes);
 

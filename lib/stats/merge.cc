@@ -109,10 +109,13 @@ class Merger {
          a.row.run.empty() ? " (no run is named: give different runs a column run or seed)" : ", of the same run");
   }
 
+  // Whether the failures that one counts would seem to be those of the other, too.
+  static bool hides_failures(const MatrixRow& one, const MatrixRow& other) { return one.wrong + one.timeouts > 0 && !other.knows_failures(); }
+
   static bool follows(const MatrixRow& before, const MatrixRow& row) {
     return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode && before.extra == row.extra &&
-           before.knows_failures() == row.knows_failures() && before.knows_length() == row.knows_length() &&
-           before.knows_reward() == row.knows_reward();
+           before.knows_length() == row.knows_length() && before.knows_reward() == row.knows_reward() && !hides_failures(before, row) &&
+           !hides_failures(row, before);
   }
 
   std::vector<MatrixSource>& sources_;

@@ -223,6 +223,10 @@ TEST(Merge, KeepsRowsApartOfWhichOneSaysLess) {
   MatrixRow bare = row("r1", "e", true, 4, 4, 3);
   bare.timeouts = 0;
   EXPECT_EQ(merge_matrices({{"a", matrix({row("r1", "e", true, 0, 4, 3, 1, 2, 8), bare})}}).rows.size(), 2u);
+  MatrixRow first = row("r1", "e", true, 0, 4, 4);  // of the same table, which has no column of failures
+  const Matrix merged = merge_matrices({{"a", matrix({first, bare})}});
+  ASSERT_EQ(merged.rows.size(), 1u);
+  EXPECT_FALSE(merged.rows[0].knows_failures());
 }
 
 TEST(Summary, TableHasNoNumberWhereThereIsNone) {
