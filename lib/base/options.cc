@@ -3,7 +3,6 @@
 #include <getopt.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -26,9 +25,7 @@ namespace {
 
 double parse_real(const std::string& text) {
   double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw std::invalid_argument("expected a number");
+  if (!parse_whole(text, value) || !std::isfinite(value)) throw std::invalid_argument("expected a number");
   return value;
 }
 
@@ -54,8 +51,7 @@ double parse_seconds(const std::string& text) {
 
 int64_t parse_count(const std::string& text) {
   int64_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc() && end == text.data() + text.size()) return value;
+  if (parse_whole(text, value)) return value;
   try {
     const double real = parse_real(text);
     if (std::abs(real) < 0x1p53 && real == std::floor(real)) return int64_t(real);

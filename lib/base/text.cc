@@ -1,6 +1,5 @@
 #include "base/text.h"
 
-#include <charconv>
 #include <cstdint>
 
 namespace synpo {

@@ -1,5 +1,6 @@
 // Text: UTF-8, where it is well formed; numbers, so that they come back as they were.
 #pragma once
+#include <charconv>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -14,5 +15,12 @@ size_t first_bad_byte(std::string_view text);
 
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
+
+// Reads the whole text as a number; false, and `value` is anything, where it is none or does not fit.
+template <class Number>
+bool parse_whole(std::string_view text, Number& value) {
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return error == std::errc() && end == text.data() + text.size();
+}
 
 }  // namespace synpo

@@ -1,7 +1,6 @@
 #include "format/tsv.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <unordered_set>
@@ -18,12 +17,6 @@ std::string name_bad_byte(uint8_t byte) {
   hex_digits[2] = "0123456789abcdef"[byte >> 4];
   hex_digits[3] = "0123456789abcdef"[byte & 15];
   return concat(byte < 0x80 ? "control character " : "invalid UTF-8 at byte ", hex_digits);
-}
-
-template <class Number>
-bool parse_all(const std::string& text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
 }
 
 }  // namespace
@@ -90,14 +83,14 @@ bool TsvReader::row(std::vector<std::string>& fields) {
 
 int64_t TsvReader::integer(int column, int64_t low, int64_t high) const {
   int64_t value = 0;
-  if (parse_all(fields_[column], value) && value >= low && value <= high) return value;
+  if (parse_whole(fields_[column], value) && value >= low && value <= high) return value;
   if (high == std::numeric_limits<int64_t>::max()) bad(column, concat("a whole number, at least ", low));
   bad(column, concat("a whole number from ", low, " to ", high));
 }
 
 double TsvReader::real(int column) const {
   double value = 0;
-  if (!parse_all(fields_[column], value) || !std::isfinite(value)) bad(column, "a finite number");
+  if (!parse_whole(fields_[column], value) || !std::isfinite(value)) bad(column, "a finite number");
   return value;
 }
 

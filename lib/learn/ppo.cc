@@ -1,7 +1,6 @@
 #include "learn/ppo.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <numeric>
 
@@ -17,11 +16,6 @@ namespace {
 const float* embedding_row(const Model& model, const char* name, int row, int width) {
   const TensorInfo* tensor = model.policy->parameters().find(name);
   return tensor ? model.parameters.data() + tensor->offset + size_t(row) * width : nullptr;
-}
-
-bool parse_whole(const std::string& text, double& value) {
-  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
-  return end.ec == std::errc() && end.ptr == text.data() + text.size();
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 #include "learn/recipe.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
 #include <stdexcept>
@@ -103,8 +102,7 @@ bool parse(const std::string& text, const Hyper& hyper, double& value) {
     value = double(std::find(hyper.choices.begin(), hyper.choices.end(), text) - hyper.choices.begin());
     return value < double(hyper.choices.size());
   }
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size() && value >= hyper.low && value <= hyper.high &&
+  return parse_whole(text, value) && value >= hyper.low && value <= hyper.high &&
          (!hyper.whole || value == std::floor(value));
 }
 
