@@ -11,6 +11,7 @@
 #include "base/options.h"
 #include "base/progress.h"
 #include "base/signals.h"
+#include "base/text.h"
 #include "learn/imitate.h"
 #include "learn/long_run.h"
 #include "learn/open.h"
@@ -90,7 +91,7 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
 int body(int argc, char** argv) {
   Settings s;
   RecipeOptions hyper;
-  const std::string method_help = listed_methods() + " [synpo]";
+  const std::string method_help = alternatives(method_names()) + " [synpo]";
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
@@ -99,7 +100,7 @@ int body(int argc, char** argv) {
       .call('m', "method", "NAME", method_help.c_str(),
             [&](const std::string& name) {
               const auto& names = method_names();
-              if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected " + listed_methods());
+              if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected " + alternatives(names));
               s.method = name;
             })
       .text('w', "world", "WORLD", kWorldNames, s.world)

@@ -96,11 +96,7 @@ Options& Options::real(char letter, const char* name, const char* arg, const cha
 Options& Options::choice(char letter, const char* name, const char* arg, const char* help, std::string& value,
                          std::vector<std::string> words) {
   call(letter, name, arg, help, [&value, words = std::move(words)](const std::string& given) {
-    if (std::find(words.begin(), words.end(), given) == words.end()) {
-      std::string expected = "expected " + words[0];
-      for (size_t i = 1; i < words.size(); ++i) expected += (i + 1 < words.size() ? ", " : " or ") + words[i];
-      throw std::invalid_argument(expected);
-    }
+    if (std::find(words.begin(), words.end(), given) == words.end()) throw std::invalid_argument("expected " + alternatives(words));
     value = given;
   });
   entries_.back().shown_default = value;

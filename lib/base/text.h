@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace synpo {
 
@@ -15,6 +16,9 @@ size_t first_bad_byte(std::string_view text);
 
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
+
+// "a, b or c", as a sentence names choices; "" for none.
+std::string alternatives(const std::vector<std::string>& words);
 
 // Reads the whole text as a number; false, and `value` is anything, where it is none or does not fit.
 template <class Number>

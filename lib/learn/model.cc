@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "learn/open.h"
 #include "policy/mlp.h"
 #include "policy/modulenet.h"
@@ -54,13 +55,6 @@ const std::vector<std::string>& method_names() {
   return names;
 }
 
-std::string listed_methods() {
-  const std::vector<std::string>& names = method_names();
-  std::string list = names.front();
-  for (size_t i = 1; i < names.size(); ++i) list += (i + 1 < names.size() ? ", " : " or ") + names[i];
-  return list;
-}
-
 template <class T>
 std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicyShape& shape) {
   if (method == "synpo") return std::make_unique<SynPo<T>>(shape);
@@ -68,7 +62,7 @@ std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicySh
   if (method == "mtl") return std::make_unique<Mtl<T>>(shape);
   if (method == "modulenet") return std::make_unique<ModuleNet<T>>(shape);
   if (method == "sf") return std::make_unique<Sf<T>>(shape);
-  fail(Exit::kData, "unknown method ", quoted(method), ", expected ", listed_methods());
+  fail(Exit::kData, "unknown method ", quoted(method), ", expected ", alternatives(method_names()));
 }
 template std::unique_ptr<Policy<float>> make_policy(const std::string&, const PolicyShape&);
 template std::unique_ptr<Policy<double>> make_policy(const std::string&, const PolicyShape&);

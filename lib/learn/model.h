@@ -13,8 +13,6 @@
 namespace synpo {
 
 const std::vector<std::string>& method_names();
-// "synpo, mlp, ... or sf"
-std::string listed_methods();
 // Throws kData for another name. There is one for float and one for double.
 template <class T = float>
 std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicyShape& shape);

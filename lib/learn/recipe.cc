@@ -107,11 +107,7 @@ bool parse(const std::string& text, const Hyper& hyper, double& value) {
 }
 
 std::string expectation(const Hyper& hyper) {
-  if (!hyper.choices.empty()) {
-    std::string names = "expected " + hyper.choices[0];
-    for (size_t i = 1; i < hyper.choices.size(); ++i) names += (i + 1 < hyper.choices.size() ? ", " : " or ") + hyper.choices[i];
-    return names;
-  }
+  if (!hyper.choices.empty()) return "expected " + alternatives(hyper.choices);
   return concat("expected ", hyper.whole ? "a whole number" : "a number", " from ", hyper.low, " to ", hyper.high);
 }
 

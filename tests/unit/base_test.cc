@@ -105,6 +105,13 @@ TEST(Random, UniformAndNormalHaveTheirMoments) {
   EXPECT_NEAR(neighbours / kDraws, 0, 0.016);
 }
 
+TEST(Text, AlternativesReadAsASentence) {
+  EXPECT_EQ(alternatives({}), "");
+  EXPECT_EQ(alternatives({"td"}), "td");
+  EXPECT_EQ(alternatives({"td", "q"}), "td or q");
+  EXPECT_EQ(alternatives({"td", "q", "ce"}), "td, q or ce");
+}
+
 TEST(Text, FirstBadByte) {
   const auto bad = [](std::string_view text) { return int64_t(first_bad_byte(text)); };
   for (const char* good : {"", "a\tb", "\u00e9", "\u20ac", "\U0010ffff", "\uffff"}) EXPECT_EQ(bad(good), -1) << good;
