@@ -1,7 +1,6 @@
 // synpo-render embedding: where a checkpoint's environments and tasks lie in their embedding spaces.
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "base/error.h"
 #include "draw/embedding_picture.h"
@@ -42,15 +41,9 @@ int embedding(int argc, char** argv) {
   PictureOptions picture;
   std::string kind = "pca", metric = "cosine";
   bool all = false;
-  const auto one_of = [](std::string& value, const std::string& one, const std::string& other) {
-    return [&value, one, other](const std::string& given) {
-      if (given != one && given != other) throw std::invalid_argument("expected " + one + " or " + other);
-      value = given;
-    };
-  };
   Options options("synpo-render embedding", "[OPTION]... [CHECKPOINT]", "Draws a checkpoint's embeddings of environments and of tasks side by side.");
-  options.call(0, "kind", "KIND", "pca: two principal components; distance: matrices [pca]", one_of(kind, "pca", "distance"))
-      .call(0, "metric", "NAME", "distances: cosine or euclidean [cosine]", one_of(metric, "cosine", "euclidean"))
+  options.choice(0, "kind", "KIND", "pca: two principal components; distance: matrices", kind, {"pca", "distance"})
+      .choice(0, "metric", "NAME", "distances: cosine or euclidean", metric, {"cosine", "euclidean"})
       .flag(0, "all", "environments and tasks of no seen pair too", all)
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title));
   picture.add_to(options);

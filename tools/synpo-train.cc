@@ -91,18 +91,13 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
 int body(int argc, char** argv) {
   Settings s;
   RecipeOptions hyper;
-  const std::string method_help = alternatives(method_names()) + " [synpo]";
+  const std::string methods = alternatives(method_names());
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
       .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones", s.time)
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)", s.pairs)
-      .call('m', "method", "NAME", method_help.c_str(),
-            [&](const std::string& name) {
-              const auto& names = method_names();
-              if (std::find(names.begin(), names.end(), name) == names.end()) throw std::invalid_argument("expected " + alternatives(names));
-              s.method = name;
-            })
+      .choice('m', "method", "NAME", methods.c_str(), s.method, method_names())
       .text('w', "world", "WORLD", kWorldNames, s.world)
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
       .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)

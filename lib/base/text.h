@@ -1,4 +1,4 @@
-// Text: UTF-8, where it is well formed; numbers, so that they come back as they were.
+// Text: UTF-8, where it is well formed; numbers, so that they come back as they were; lists for a sentence.
 #pragma once
 #include <charconv>
 #include <cstddef>
