@@ -5,12 +5,12 @@ CXXFLAGS ?= -O3
 PREFIX   ?= /usr/local
 B        := build
 
-ALL_CXXFLAGS := -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP $(CXXFLAGS) -Ilib -isystem /usr/include/eigen3
+ALL_CXXFLAGS := -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP $(CXXFLAGS) -Ilib -Itools -isystem /usr/include/eigen3
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-LIB_SRC  := $(wildcard lib/*/*.cc)
+LIB_SRC  := $(shell find lib -name '*.cc')
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
 # What the compiler is for; this machine where there is none yet (make deps all).
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
@@ -20,10 +20,10 @@ TARGET_avx512 := $(TARGET_avx2) -mavx512f -mavx512bw -mavx512dq -mavx512vl
 TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GCC 12 warns of its own header
 KERNEL_OBJ := $(TARGETS:%=$(B)/lib/kernel/target_%.o)
 LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o
-TOOL_SRC := $(wildcard tools/*.cc)
-TEST_SRC := $(wildcard tests/unit/*.cc)
+TOOL_SRC := $(shell find tools -name '*.cc')
+TEST_SRC := $(shell find tests/unit -name '*.cc')
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
-MAPS     := $(wildcard lib/world/maps/map*.txt)
+MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
 
 PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
             libgtest-dev bats jq man-db python3-numpy
@@ -47,9 +47,9 @@ $(B)/libsynpo.a: $(LIB_OBJ)
 	rm -f $@
 	@ar rcs $@ $^
 
-# Every tool is one file of its name, and whatever stands beside it as NAME-*.cc.
+# Every tool is one file of its name; those of several commands have a folder of them.
 define TOOL_RULE
-$(B)/$(1): $(patsubst %.cc,$(B)/%.o,$(wildcard tools/$(1).cc tools/$(1)-*.cc)) $(B)/libsynpo.a
+$(B)/$(1): $(patsubst %.cc,$(B)/%.o,tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc)) $(B)/libsynpo.a
 	$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(OPENCV_LIBS))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
@@ -61,13 +61,13 @@ $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
 	$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(OPENCV_LIBS)
 
 # Tests run for seconds and are compiled for minutes.
-$(TEST_OBJ): ALL_CXXFLAGS += -O1
+$(TEST_OBJ): ALL_CXXFLAGS += -O1 -Itests/unit
 
 # Eigen, the yardstick there, knows no dispatch at run time.
 $(B)/tests/bench/synpo-bench.o: ALL_CXXFLAGS += -march=native
 
-# Only the drawing room, its tool and its tests see OpenCV.
-$(B)/lib/draw/%.o $(B)/tests/unit/draw%.o: ALL_CXXFLAGS += $(OPENCV_CFLAGS)
+# Only lib/draw/canvas and lib/draw/vision, and the tests of drawing, see OpenCV.
+$(B)/lib/draw/canvas/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: ALL_CXXFLAGS += $(OPENCV_CFLAGS)
 
 $(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
 	@mkdir -p $(@D)
@@ -79,7 +79,7 @@ $(B)/%.o: %.cc
 
 $(B)/builtin_maps.cc: $(MAPS) Makefile
 	@mkdir -p $(@D)
-	@{ echo '#include "world/builtin_maps.h"'; echo 'namespace synpo {'; echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
+	@{ echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
 	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; echo '};'; echo '}'; } > $@
 $(B)/builtin_maps.o: $(B)/builtin_maps.cc
 	$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
@@ -88,7 +88,7 @@ check: all $(B)/unit-tests
 	scripts/check $(B)
 
 check-torch: $(B)/unit-tests
-	scripts/check-torch $(B)
+	tests/torch/check $(B)
 
 bench: all $(B)/synpo-bench
 	scripts/bench

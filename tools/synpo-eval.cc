@@ -4,12 +4,12 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "base/options.h"
-#include "base/progress.h"
+#include "base/cli/options.h"
+#include "base/cli/progress.h"
 #include "base/signals.h"
 #include "format/matrix.h"
-#include "learn/evaluate.h"
-#include "learn/model.h"
+#include "play/evaluate.h"
+#include "play/model.h"
 
 using namespace synpo;
 

@@ -1,7 +1,7 @@
 // synpo-finetune: a trained policy goes on learning, for new environments and tasks or by reward.
-#include "synpo-finetune.h"
+#include "finetune/finetune.h"
 
-#include "base/options.h"
+#include "base/cli/options.h"
 
 using namespace synpo;
 

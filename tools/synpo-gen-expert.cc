@@ -1,11 +1,11 @@
 // Expert trajectories, and expert labels for anyone's trajectories, as JSON Lines on stdout.
 #include "base/error.h"
-#include "base/io.h"
-#include "base/options.h"
-#include "base/progress.h"
+#include "base/files/io.h"
+#include "base/cli/options.h"
+#include "base/cli/progress.h"
 #include "base/signals.h"
-#include "learn/episode.h"
-#include "learn/open.h"
+#include "play/episode.h"
+#include "play/world_factory.h"
 
 using namespace synpo;
 

@@ -1,9 +1,9 @@
 // synpo-matrix: splits of pairs into seen and unseen, and what success matrices say. A command each in synpo-matrix-*.cc.
-#include "synpo-matrix.h"
+#include "matrix/matrix.h"
 
 #include <cstdio>
 
-#include "stats/summary.h"
+#include "stats/report/summary.h"
 
 namespace synpo {
 

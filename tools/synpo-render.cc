@@ -1,17 +1,17 @@
 // synpo-render: matrices, curves, mazes, kitchens, views, episodes, embeddings and policies as PNG pictures.
-#include "synpo-render.h"
+#include "render/render.h"
 
 #include <algorithm>
 
 #include "base/error.h"
-#include "draw/agent_view.h"
-#include "draw/kitchen_agent_view.h"
-#include "draw/kitchen_picture.h"
-#include "draw/maze_picture.h"
-#include "draw/terminal.h"
-#include "world/kitchen_plan.h"
-#include "world/maze.h"
-#include "world/task.h"
+#include "draw/grid/agent_view.h"
+#include "draw/kitchen/kitchen_agent_view.h"
+#include "draw/kitchen/kitchen_picture.h"
+#include "draw/grid/maze_picture.h"
+#include "draw/terminal/terminal.h"
+#include "world/kitchen/plan.h"
+#include "world/grid/maze.h"
+#include "world/grid/task.h"
 
 using namespace synpo;
 

@@ -8,13 +8,13 @@
 
 #include "base/clock.h"
 #include "base/error.h"
-#include "base/options.h"
-#include "base/progress.h"
+#include "base/cli/options.h"
+#include "base/cli/progress.h"
 #include "base/signals.h"
 #include "base/text.h"
 #include "learn/imitate.h"
 #include "learn/long_run.h"
-#include "learn/open.h"
+#include "play/world_factory.h"
 
 using namespace synpo;
 

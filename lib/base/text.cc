@@ -28,6 +28,29 @@ size_t first_bad_byte(std::string_view text) {
   return std::string_view::npos;
 }
 
+bool natural_less(const std::string& a, const std::string& b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  size_t i = 0, j = 0;
+  while (i < a.size() && j < b.size()) {
+    if (digit(a[i]) && digit(b[j])) {
+      const size_t i0 = std::min(a.find_first_not_of('0', i), a.size()), j0 = std::min(b.find_first_not_of('0', j), b.size());
+      size_t i1 = i0, j1 = j0;
+      while (i1 < a.size() && digit(a[i1])) ++i1;
+      while (j1 < b.size() && digit(b[j1])) ++j1;
+      if (i1 - i0 != j1 - j0) return i1 - i0 < j1 - j0;
+      if (const int order = a.compare(i0, i1 - i0, b, j0, j1 - j0)) return order < 0;
+      i = i1;
+      j = j1;
+    } else {
+      if (a[i] != b[j]) return uint8_t(a[i]) < uint8_t(b[j]);
+      ++i;
+      ++j;
+    }
+  }
+  if (a.size() - i != b.size() - j) return a.size() - i < b.size() - j;
+  return a < b;
+}
+
 std::string shortest(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);

@@ -14,6 +14,9 @@ size_t utf8_length(std::string_view text, size_t at);
 // Where the first byte stands that is not part of valid UTF-8 or that is a control character other than a tab; npos when there is none.
 size_t first_bad_byte(std::string_view text);
 
+// True when `a` comes before `b` with runs of digits compared as numbers: map2 before map10.
+bool natural_less(const std::string& a, const std::string& b);
+
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
 

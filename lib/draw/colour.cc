@@ -63,9 +63,29 @@ double luminance(Rgb colour) {
   return 0.2126 * to_linear(colour.r / 255.0) + 0.7152 * to_linear(colour.g / 255.0) + 0.0722 * to_linear(colour.b / 255.0);
 }
 
+Rgb mix(Rgb from, Rgb to, double share) {
+  const auto at = [share](uint8_t a, uint8_t b) { return uint8_t(std::lround(a + (b - a) * share)); };
+  return {at(from.r, to.r), at(from.g, to.g), at(from.b, to.b)};
+}
+
 Rgb ink_on(Rgb ground) {
   // Where the contrast ratios of black and white with the ground, (Y + 0.05) / 0.05 and 1.05 / (Y + 0.05), are equal.
   return luminance(ground) > std::sqrt(1.05 * 0.05) - 0.05 ? Rgb{0, 0, 0} : Rgb{255, 255, 255};
 }
+
+const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme) {
+  static const Ramp grey = {0, 0};
+  if (group < 0) return grey;
+  const std::string& name = table.groups[group].name;
+  if (table.by_part) return name == "Q" ? scheme.seen : name == "P" ? scheme.other : scheme.unseen;
+  return name == "seen" ? scheme.seen : scheme.unseen;
+}
+
+Rgb time_colour(double share) {
+  share = std::clamp(share, 0.0, 1.0);
+  return ramp_colour({90 + 215 * share, 0.15}, 0.22 + 0.78 * share);
+}
+
+Rgb step_colour(int step, int steps) { return time_colour(steps > 1 ? double(step - 1) / (steps - 1) : 1); }
 
 }  // namespace synpo

@@ -2,7 +2,8 @@
 #pragma once
 #include <string>
 
-#include "world/view.h"
+#include "base/rgb.h"
+#include "stats/matrix/heat_table.h"
 
 namespace synpo {
 
@@ -25,10 +26,20 @@ struct Scheme {
 // Throws std::invalid_argument for any other name.
 const Scheme& find_scheme(const std::string& name);
 
+// The ramp of a group of the table; a grey one for all pairs (-1).
+const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme);
+
+// The colour that lies `share` of the way from one to the other.
+Rgb mix(Rgb from, Rgb to, double share);
 // Black or white, whichever stands out more.
 Rgb ink_on(Rgb ground);
 // Relative luminance (WCAG 2), 0 to 1.
 double luminance(Rgb colour);
+
+// From 0, the start, to 1, the last step; darkness rises strictly, hue runs from yellow to purple.
+Rgb time_colour(double share);
+// Of a step, from 1, of so many.
+Rgb step_colour(int step, int steps);
 
 constexpr Rgb kInk = {33, 37, 41};        // text
 constexpr Rgb kSoftInk = {95, 101, 108};  // captions, axis titles

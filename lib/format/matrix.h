@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/io.h"
+#include "base/files/io.h"
 
 namespace synpo {
 

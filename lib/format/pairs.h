@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "base/io.h"
+#include "base/files/io.h"
 
 namespace synpo {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "base/io.h"
+#include "base/files/io.h"
 
 namespace synpo {
 

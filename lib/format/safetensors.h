@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "base/half.h"
-#include "base/io.h"
+#include "base/files/io.h"
 
 namespace synpo {
 

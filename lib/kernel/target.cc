@@ -5,7 +5,7 @@
 // scripts/check looks at what the objects export.
 #include "kernel/kernels.h"
 #include "kernel/product.h"
-#include "kernel/rows.h"
+#include "kernel/elementwise.h"
 #include "kernel/transform.h"
 #ifdef __AMX_BF16__
 #include "kernel/product_amx.h"

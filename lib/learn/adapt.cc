@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "learn/gather.h"
-#include "learn/running_episode.h"
+#include "base/take_rows.h"
+#include "play/running_episode.h"
 #include "nn/init.h"
 
 namespace synpo {

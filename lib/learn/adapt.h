@@ -11,7 +11,7 @@
 
 #include "base/parallel.h"
 #include "learn/embedding_loss.h"
-#include "learn/model.h"
+#include "play/model.h"
 #include "nn/adam.h"
 
 namespace synpo {

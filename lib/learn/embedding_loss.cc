@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "nn/loss.h"
-#include "policy/bilinear_form.h"
+#include "policy/head/bilinear_form.h"
 
 namespace synpo {
 namespace {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "learn/model.h"
-#include "nn/frozen_perceptron.h"
-#include "policy/embedding_table.h"
-#include "policy/groups.h"
+#include "play/model.h"
+#include "nn/layers/frozen_perceptron.h"
+#include "policy/head/embedding_table.h"
+#include "policy/head/groups.h"
 
 namespace synpo {
 

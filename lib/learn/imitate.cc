@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "learn/evaluate.h"
+#include "play/evaluate.h"
 #include "nn/adam.h"
 #include "nn/loss.h"
 

@@ -5,9 +5,9 @@
 
 #include "base/parallel.h"
 #include "format/run_log.h"
-#include "learn/model.h"
+#include "play/model.h"
 #include "learn/recipe.h"
-#include "learn/stream.h"
+#include "play/stream.h"
 
 namespace synpo {
 

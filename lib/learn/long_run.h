@@ -1,6 +1,6 @@
 // What the tools that learn for hours have in common: where they write, and after which updates.
 #pragma once
-#include "base/options.h"
+#include "base/cli/options.h"
 
 namespace synpo {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "format/safetensors.h"
-#include "learn/episode.h"
+#include "play/episode.h"
 
 namespace synpo {
 

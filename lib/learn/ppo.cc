@@ -6,7 +6,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "learn/gather.h"
+#include "base/take_rows.h"
 #include "nn/softmax.h"
 
 namespace synpo {

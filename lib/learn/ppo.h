@@ -13,9 +13,9 @@
 #include "base/parallel.h"
 #include "learn/clipped_objective.h"
 #include "learn/gae.h"
-#include "learn/lanes.h"
-#include "learn/model.h"
-#include "nn/perceptron.h"
+#include "play/lanes.h"
+#include "play/model.h"
+#include "nn/layers/perceptron.h"
 #include "nn/rmsprop.h"
 
 namespace synpo {

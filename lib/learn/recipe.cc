@@ -7,7 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
-#include "learn/model.h"
+#include "play/model.h"
 
 namespace synpo {
 namespace {
@@ -80,7 +80,7 @@ struct MethodDefault {
 // In every recipe: what the method is.
 constexpr MethodDefault kMethodDefaults[] = {
     {"mlp", "feature", 256}, {"modulenet", "head-hidden", 128}, {"sf", "head-hidden", 512}, {"sf", "reward-loss", 1}};
-// In "fast": what scripts/reproduce grid has chosen, but for MTL's embeddings (scripts/lab/book.md).
+// In "fast": what scripts/reproduce grid has chosen, but for MTL's embeddings (lab/book.md).
 constexpr MethodDefault kFastDefaults[] = {{"mlp", "embedding-sd", 0.3}, {"mlp", "weight-decay", 1e-5}, {"modulenet", "dropout", 0},
                                            {"modulenet", "weight-decay", 0}, {"sf", "sf-loss", double(SfLoss::kCrossEntropy)},
                                            {"sf", "embedding-sd", 0.1}, {"sf", "reward-loss", 0.01}, {"sf", "weight-decay", 1e-4}};

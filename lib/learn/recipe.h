@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "base/options.h"
+#include "base/cli/options.h"
 #include "learn/steps.h"
 #include "nn/adam.h"
 #include "policy/policy.h"

@@ -11,7 +11,7 @@
 #include "base/parallel.h"
 #include "learn/memory.h"
 #include "policy/policy.h"
-#include "learn/running_episode.h"
+#include "play/running_episode.h"
 
 namespace synpo {
 

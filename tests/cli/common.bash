@@ -1,7 +1,7 @@
 # What every test file loads: the build directory in PATH, a fresh working directory, and ways to say what should happen.
 bats_require_minimum_version 1.5.0
 
-ROOT=$(cd "$BATS_TEST_DIRNAME/../.." && pwd)
+ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 DATA=$ROOT/tests/data/cli
 PATH="${SYNPO_BUILD:-$ROOT/build}:$PATH"
 export LC_ALL=C

@@ -1,5 +1,5 @@
 load common
-load pictures
+load render/pictures
 
 setup_file() {
     cd "$BATS_FILE_TMPDIR" || exit

@@ -1,10 +1,12 @@
 load common
 
-# A small tree of rooms, cut from the real one.
+# A small tree of modules, cut from the real one.
 tree() {
-    mkdir -p lib tools tests/unit
-    for file in lib/base/error.h lib/base/io.h lib/world/maze.h lib/format/tsv.h lib/nn/dense.h lib/policy/policy.h lib/learn/model.h \
-        lib/stats/interval.h lib/draw/canvas.h tools/synpo-eval.cc; do
+    mkdir -p lib tools tests/unit/draw tests/unit/world
+    for file in lib/base/error.h lib/base/files/io.h lib/world/world.h lib/world/grid/maze.h lib/world/kitchen/rules.h lib/format/tsv.h lib/nn/gemm.h \
+        lib/nn/layers/dense.h lib/policy/policy.h lib/policy/head/groups.h lib/play/model.h lib/learn/steps.h lib/stats/interval.h lib/stats/matrix/runs.h \
+        lib/draw/colour.h lib/draw/canvas/canvas.h lib/draw/plot/axes.h lib/draw/episode/path.h lib/draw/grid/maze_picture.h lib/draw/terminal/terminal.h \
+        tools/synpo-eval.cc; do
         mkdir -p "$(dirname $file)"
         cp "$ROOT/$file" $file
     done
@@ -29,46 +31,74 @@ refused() {
     while read -r file include; do
         refused "$file" "$include"
     done <<'END'
-lib/base/io.h "world/maze.h"
-lib/base/io.h "format/tsv.h"
-lib/world/maze.h "format/tsv.h"
-lib/world/maze.h "nn/dense.h"
-lib/format/tsv.h "world/maze.h"
-lib/format/tsv.h <nn/dense.h>
-lib/nn/dense.h "world/maze.h"
-lib/nn/dense.h   "format/tsv.h"
-lib/nn/dense.h "policy/policy.h"
-lib/policy/policy.h "learn/model.h"
+lib/base/error.h "world/world.h"
+lib/base/error.h "base/files/io.h"
+lib/base/files/io.h "format/tsv.h"
+lib/base/files/io.h "base/cli/options.h"
+lib/world/world.h "format/tsv.h"
+lib/world/world.h "world/grid/maze.h"
+lib/world/grid/maze.h "nn/layers/dense.h"
+lib/world/grid/maze.h "world/kitchen/rules.h"
+lib/world/kitchen/rules.h "world/grid/maze.h"
+lib/format/tsv.h "world/world.h"
+lib/format/tsv.h <nn/layers/dense.h>
+lib/nn/gemm.h "nn/layers/dense.h"
+lib/nn/layers/dense.h "world/world.h"
+lib/nn/layers/dense.h   "format/tsv.h"
+lib/nn/layers/dense.h "policy/policy.h"
+lib/policy/policy.h "policy/head/groups.h"
+lib/policy/policy.h "play/model.h"
 lib/policy/policy.h "stats/interval.h"
-lib/learn/model.h "draw/canvas.h"
-lib/stats/interval.h "world/maze.h"
-lib/stats/interval.h "draw/canvas.h"
-lib/draw/canvas.h "nn/dense.h"
-lib/draw/canvas.h "policy/policy.h"
-lib/draw/canvas.h "learn/model.h"
-lib/world/maze.h "../format/tsv.h"
-lib/world/maze.h "task.h"
-lib/world/maze.h <opencv2/core.hpp>
+lib/play/model.h "learn/steps.h"
+lib/learn/steps.h "draw/canvas/canvas.h"
+lib/stats/interval.h "world/world.h"
+lib/stats/interval.h "stats/matrix/runs.h"
+lib/stats/matrix/runs.h "draw/colour.h"
+lib/draw/colour.h "draw/canvas/canvas.h"
+lib/draw/canvas/canvas.h "nn/gemm.h"
+lib/draw/canvas/canvas.h "policy/policy.h"
+lib/draw/canvas/canvas.h "play/model.h"
+lib/draw/canvas/canvas.h "draw/plot/axes.h"
+lib/draw/plot/axes.h "draw/grid/maze_picture.h"
+lib/draw/plot/axes.h <opencv2/core.hpp>
+lib/draw/episode/path.h "draw/plot/axes.h"
+lib/draw/grid/maze_picture.h "draw/kitchen/kitchen_picture.h"
+lib/draw/grid/maze_picture.h "draw/plot/axes.h"
+lib/draw/terminal/terminal.h "draw/canvas/canvas.h"
+lib/draw/terminal/terminal.h "draw/grid/maze_picture.h"
+lib/world/grid/maze.h "../format/tsv.h"
+lib/world/grid/maze.h "task.h"
+lib/world/grid/maze.h <opencv2/core.hpp>
 tools/synpo-eval.cc <opencv2/core.hpp>
 END
 }
 
-@test "check-order: several violations, each with its line; OpenCV in lib/draw and its tests alone; a room it does not know" {
+@test "check-order: several violations, each with its line; OpenCV in its two wings and their tests alone; modules and wings it does not know" {
     tree
-    sed -i '3i #include "format/tsv.h"' lib/world/maze.h
-    sed -i '2i # include <opencv2/core.hpp>' lib/nn/dense.h
-    mkdir lib/attic
-    echo '#include <opencv2/core.hpp>' >tests/unit/draw_test.cc
-    cp tests/unit/draw_test.cc lib/draw/font.cc
-    cp tests/unit/draw_test.cc tests/unit/world_test.cc
-    echo '#pragma once' >lib/attic/old.h
+    sed -i '3i #include "format/tsv.h"' lib/world/world.h
+    sed -i '2i # include <opencv2/core.hpp>' lib/nn/gemm.h
+    mkdir lib/attic lib/draw/attic lib/kernel lib/kernel/attic
+    echo '#include <opencv2/core.hpp>' >tests/unit/draw/canvas_test.cc
+    cp tests/unit/draw/canvas_test.cc lib/draw/canvas/font.cc
+    cp tests/unit/draw/canvas_test.cc tests/unit/world/world_test.cc
+    for wing in attic draw/attic kernel/attic; do echo '#pragma once' >lib/$wing/old.h; done
     run -1 "$ROOT/scripts/check-order" .
     printf '%s\n' "${lines[@]}" | cut -d : -f 1,2 | sort >got
-    printf '%s\n' lib/attic/old.h:1 lib/nn/dense.h:2 lib/world/maze.h:3 tests/unit/world_test.cc:1 | cmp - got
+    printf '%s\n' lib/attic/old.h:1 lib/draw/attic/old.h:1 lib/kernel/attic/old.h:1 lib/nn/gemm.h:2 lib/world/world.h:3 \
+        tests/unit/world/world_test.cc:1 | cmp - got
     mkdir empty
     run -66 "$ROOT/scripts/check-order" empty
     mkdir empty/lib
     run -66 "$ROOT/scripts/check-order" empty
+}
+
+@test "check-order: a folder has at most 20 files" {
+    tree
+    for i in {1..19}; do : >lib/format/$i.txt; done
+    "$ROOT/scripts/check-order" .
+    : >lib/format/20.txt
+    run -1 "$ROOT/scripts/check-order" .
+    [ "$output" = "lib/format: 21 files, expected at most 20" ]
 }
 
 # kernel TARGET TEXT: an object of that name, with this in the namespace that it should stay in.

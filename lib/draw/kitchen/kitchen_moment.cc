@@ -1,0 +1,133 @@
+#include "draw/kitchen/kitchen_moment.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "draw/colour.h"
+
+namespace synpo {
+namespace {
+
+constexpr Rgb kSight = {0, 150, 160};
+constexpr double kSightOpacity = 0.3;
+constexpr double kHalfSight = std::numbers::pi / 6;
+constexpr double kObjectShare = 1.08;  // of a cell
+
+// How far the field of view reaches, in cells, by directions from its left edge to its right one.
+class Reach {
+ public:
+  Reach(const Kitchen& kitchen, const KitchenPose& eye) {
+    const double ahead = eye.heading * std::numbers::pi / 180;
+    for (size_t i = 0; i < cells_.size(); ++i) {
+      const double angle = ahead - kHalfSight + 2 * kHalfSight * double(i) / double(cells_.size() - 1);
+      cells_[i] = along(kitchen, eye, std::sin(angle), -std::cos(angle));
+    }
+  }
+  // `angle` from straight ahead, within the field of view.
+  double at(double angle) const {
+    const double share = (angle + kHalfSight) / (2 * kHalfSight);
+    return cells_[size_t(std::clamp(std::lround(share * double(cells_.size() - 1)), 0L, long(cells_.size()) - 1))];
+  }
+
+ private:
+  static double along(const Kitchen& kitchen, const KitchenPose& eye, double x, double y) {
+    constexpr double kPace = 0.02;
+    bool in_fridge = false;
+    for (double length = 0; length < kSightCells; length += kPace) {
+      const char c = kitchen.at(int(std::floor(eye.row + 0.5 + length * y)), int(std::floor(eye.column + 0.5 + length * x)));
+      if (c == '#' || (in_fridge && c != 'F')) return length;
+      in_fridge = c == 'F';
+    }
+    return kSightCells;
+  }
+  std::array<double, 361> cells_;
+};
+
+}  // namespace
+
+Kitchen kitchen_of(const KitchenSet& world, int env) {
+  const Environment& environment = world.environments()[size_t(env)];
+  return parse_kitchen(environment.name, environment.content, environment.name);
+}
+
+void draw_sight(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& eye) {
+  constexpr int kFine = 3;  // samples a pixel, each way
+  const Reach reach(kitchen, eye);
+  const Point from = place.centre(plan_cell(kitchen, eye.row, eye.column));
+  const int side = 2 * (kSightCells * place.cell + 1);
+  Mask mask = {{int(from.x) - side / 2, int(from.y) - side / 2, side, side}, {}};
+  for (int y = 0; y < side; ++y)
+    for (int x = 0; x < side; ++x) {
+      int covered = 0;
+      for (int i = 0; i < kFine * kFine; ++i) {
+        const double dx = mask.box.x + x + (i % kFine + 0.5) / kFine - from.x, dy = mask.box.y + y + (i / kFine + 0.5) / kFine - from.y;
+        const double angle = std::remainder(std::atan2(dx, -dy) - eye.heading * std::numbers::pi / 180, 2 * std::numbers::pi);
+        covered += std::fabs(angle) <= kHalfSight && std::hypot(dx, dy) <= reach.at(angle) * place.cell;
+      }
+      mask.coverage.push_back(uint8_t(255 * covered / (kFine * kFine)));
+    }
+  canvas.paint(mask, kSight, kSightOpacity);
+}
+
+void draw_sight_sign(Canvas& canvas, const Box& box) {
+  const Rgb shade = {uint8_t(255 - (255 - kSight.r) * 0.45), uint8_t(255 - (255 - kSight.g) * 0.45), uint8_t(255 - (255 - kSight.b) * 0.45)};
+  const double top = box.y + 0.06 * box.height;
+  canvas.polygon({{box.x + box.width / 2.0, double(box.bottom())}, {double(box.x), top}, {double(box.right()), top}}, shade);
+}
+
+Box object_box(const PlanGrid& place, int cell) {
+  const Point centre = place.centre(cell);
+  const int side = int(std::lround(place.cell * kObjectShare));
+  return {int(std::lround(centre.x - side / 2.0)), int(std::lround(centre.y - side / 2.0)), side, side};
+}
+
+Box agent_box(const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& pose) {
+  return object_box(place, plan_cell(kitchen, pose.row, pose.column));
+}
+
+void draw_objects(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenFrame& frame, int wanted) {
+  const auto box_of = [&](int object) {
+    const int cell = frame.objects[size_t(object)];
+    return object_box(place, plan_cell(kitchen, cell / kSceneStride, cell % kSceneStride));
+  };
+  if (frame.objects[size_t(wanted)] >= 0) draw_wanted(canvas, box_of(wanted), wanted);
+  for (int i = 0; i < kKitchenObjects; ++i)
+    if (frame.objects[size_t(i)] >= 0) draw_object(canvas, box_of(i), i);
+}
+
+void draw_moment(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenFrame& frame, int wanted) {
+  draw_kitchen(canvas, place, kitchen, frame.doors, Lettering::kNames);
+  draw_sight(canvas, place, kitchen, frame.eye);
+  draw_objects(canvas, place, kitchen, frame, wanted);
+  draw_looker(canvas, agent_box(place, kitchen, frame.eye), frame.eye.heading);
+}
+
+void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame& frame) {
+  constexpr int kFine = 2;  // rays a pixel, each way
+  const int width = kFine * box.width;
+  std::vector<uint8_t> fine(size_t(width) * size_t(kFine * box.height) * 3), rgb;
+  render(scene, frame, width, kFine * box.height, fine.data());
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x)
+      for (int channel = 0; channel < 3; ++channel) {
+        int sum = 0;
+        for (int i = 0; i < kFine * kFine; ++i)
+          sum += fine[(size_t(y * kFine + i / kFine) * size_t(width) + size_t(x * kFine + i % kFine)) * 3 + size_t(channel)];
+        rgb.push_back(uint8_t((sum + kFine * kFine / 2) / (kFine * kFine)));
+      }
+  canvas.picture(box, rgb.data());
+}
+
+void draw_small_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame* frame) {
+  std::array<uint8_t, kSmallView * kSmallView * 3> rgb = {};
+  if (frame) render_small(scene, *frame, rgb.data());
+  const PlanGrid place = {box.x, box.y, box.width / kSmallView, kSmallView};
+  for (int at = 0; at < kSmallView * kSmallView; ++at) {
+    const uint8_t* pixel = rgb.data() + 3 * at;
+    canvas.fill(place.box(at), {pixel[0], pixel[1], pixel[2]});
+  }
+}
+
+}  // namespace synpo

@@ -1,0 +1,128 @@
+#include "draw/plot/curves.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "draw/colour.h"
+#include "draw/plot/curves_legend.h"
+
+namespace synpo {
+namespace {
+
+constexpr double kMarkLinePt = 0.8;
+// Okabe and Ito's palette (2008), which colour-blind readers tell apart, without its yellow, the darker ones first.
+constexpr Rgb kColours[kMostMethods] = {{0, 114, 178}, {213, 94, 0},    {0, 158, 115}, {204, 121, 167},
+                                        {40, 40, 40},  {86, 180, 233}, {230, 159, 0}};
+
+std::vector<Point> places(const Axes& axes, const Box& plot, const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<Point> out;
+  for (size_t i = 0; i < x.size(); ++i) out.push_back(axes.place(plot, x[i], y[i]));
+  return out;
+}
+
+// Marks of a panel as dotted lines; the labels beside it, moved apart where they would meet.
+void draw_marks(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout, const CurvesLayout::Panel& panel,
+                const CurvesStyle& style) {
+  std::vector<std::pair<double, const CurveMark*>> marks;
+  for (const CurveMark& mark : style.marks) {
+    const bool here = std::any_of(panel.parts.begin(), panel.parts.end(), [&](int part) { return set.parts[part] == mark.part; });
+    if (mark.part.empty() || here) marks.push_back({layout.axes.place(panel.plot, 0, mark.value).y, &mark});
+  }
+  std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  const int size = layout.mark_size, line = size * 5 / 4, space = layout.mark_space;
+  std::vector<double> text;
+  for (const auto& [y, mark] : marks) text.push_back(text.empty() ? y : std::max(y, text.back() + line));
+  // Labels that were pushed below the plot push back.
+  double lowest = panel.plot.bottom();
+  for (size_t i = text.size(); i-- > 0;) {
+    text[i] = std::min(text[i], lowest);
+    lowest = text[i] - line;
+  }
+  const Box& plot = panel.plot;
+  for (size_t i = 0; i < marks.size(); ++i) {
+    const double y = marks[i].first, right = plot.right();
+    const Dash dots = {1.2 * style.scale, 2.6 * style.scale};
+    canvas.paint(stroke_mask({{double(plot.x), y}, {right, y}}, kMarkLinePt * style.scale, dots, plot), kSoftInk);
+    if (marks[i].second->label.empty()) continue;
+    const Box beside = {plot.right(), 0, space, canvas.height()};
+    canvas.paint(stroke_mask({{right, y}, {right + space * 2 / 3, text[i]}}, 0.5 * style.scale, {}, beside), kSoftInk);
+    const std::string label = canvas.font().fitted(marks[i].second->label, size, panel.area.right() - plot.right() - space);
+    canvas.text(plot.right() + space, int(std::lround(text[i])), label, size, kSoftInk, Across::kLeft, Upright::kMiddle);
+  }
+}
+
+// The first method is drawn last, on top.
+void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout, const CurvesLayout::Panel& panel, double scale,
+                bool bands) {
+  // A line along an edge is drawn in its full width.
+  const int reach = int(std::ceil(kCurvePt * scale / 2));
+  const Box plot = panel.plot;
+  const Box clip = {plot.x - reach, plot.y - reach, plot.width + 2 * reach, plot.height + 2 * reach};
+  for (size_t method = set.methods.size(); method-- > 0;)
+    for (const int part : panel.parts) {
+      const auto& curve = set.methods[method].parts[part];
+      if (!curve) continue;
+      const CurveLook look = curve_look(set, layout.one_panel, method, part);
+      if (!bands)
+        canvas.paint(stroke_mask(places(layout.axes, plot, curve->x, curve->mean), kCurvePt * scale, curve_dash(look, scale), clip),
+                     look.colour);
+      else if (!curve->low.empty())
+        canvas.paint(band_mask(places(layout.axes, plot, curve->x, curve->high), places(layout.axes, plot, curve->x, curve->low), plot),
+                     look.colour, kBandOpacity);
+    }
+}
+
+}  // namespace
+
+CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band) {
+  CurveSet set;
+  for (const MethodRuns& method : methods) set.methods.push_back({method.label, {}});
+  for (size_t part = 0; part < parts.size(); ++part) {
+    std::vector<std::optional<MeanCurve>> curves;
+    for (const MethodRuns& method : methods) {
+      std::vector<Curve> runs;
+      for (const auto& run : method.runs)
+        if (!run[part].x.empty()) runs.push_back(run[part]);
+      try {
+        curves.push_back(runs.empty() ? std::nullopt : std::optional(mean_curve(runs, band)));
+      } catch (const Error& error) {
+        fail(error.code(), method.label.empty() ? "" : quoted(method.label) + ": ", error.what());
+      }
+    }
+    if (std::none_of(curves.begin(), curves.end(), [](const auto& curve) { return curve.has_value(); })) continue;
+    set.parts.push_back(parts[part]);
+    for (size_t i = 0; i < curves.size(); ++i) set.methods[i].parts.push_back(std::move(curves[i]));
+  }
+  if (set.parts.empty()) fail(Exit::kData, "no values to draw");
+  return set;
+}
+
+CurveLook curve_look(const CurveSet& set, bool one_panel, size_t method, size_t part) {
+  const bool styles = one_panel && set.parts.size() == 2;
+  return {kColours[set.methods.size() == 1 && styles ? part : method], styles && part == 0};
+}
+
+Dash curve_dash(const CurveLook& look, double scale) {
+  return look.dashed ? Dash{2.6 * scale, 3.2 * scale} : Dash{};
+}
+
+Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font) {
+  const CurvesLayout layout = lay_out_curves(set, style, font);
+  Canvas canvas(layout.width, layout.height, font);
+  layout.heading.draw(canvas, layout.margin, layout.margin);
+  const CurvesLegend legend = lay_out_curves_legend(set, layout.one_panel, style.scale, layout.width - 2 * layout.margin, font);
+  draw_curves_legend(canvas, legend, layout.margin, layout.legend_y, style.scale);
+  for (const CurvesLayout::Panel& panel : layout.panels) {
+    const Box& plot = panel.plot;
+    layout.axes.draw(canvas, plot);
+    canvas.text(plot.x + plot.width / 2, panel.area.y, panel.title, layout.panel_title_size, kInk, Across::kCentre);
+    draw_lines(canvas, set, layout, panel, style.scale, true);
+    draw_marks(canvas, set, layout, panel, style);
+    layout.axes.frame(canvas, plot);
+    draw_lines(canvas, set, layout, panel, style.scale, false);
+  }
+  return canvas;
+}
+
+}  // namespace synpo

@@ -1,0 +1,95 @@
+// Learning curves (Figures 2, 3 and 7): methods against updates, states or minutes, seen and unseen pairs in panels of their own or as
+// two styles of line, each method a mean with a band over its runs.
+#pragma once
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "draw/plot/axes.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/heading.h"
+#include "draw/canvas/stroke.h"
+#include "stats/curve.h"
+
+namespace synpo {
+
+constexpr int kMostMethods = 7;  // more colours cannot be told apart
+
+struct CurveSet {
+  struct Method {
+    std::string label;                            // may be empty where there is but one
+    std::vector<std::optional<MeanCurve>> parts;  // as `parts`; nothing where no run has values
+  };
+  std::vector<std::string> parts;  // {"seen", "unseen"}, one of them, or {""} where the pairs are not told apart
+  std::vector<Method> methods;
+};
+
+// The runs of a method, each with a curve for every part; empty curves are left out.
+struct MethodRuns {
+  std::string label;
+  std::vector<std::vector<Curve>> runs;
+};
+// Means over the runs. Parts that no method has values for are dropped. Throws kData where nothing is left, or runs of a method have no
+// x in common.
+CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band);
+
+// A line across at a value, with a label beside the plot.
+struct CurveMark {
+  double value = 0;
+  std::string label;
+  std::string part;  // seen or unseen: only in its panel; empty: in each
+};
+
+// Ends left out (NaN) are chosen by the data.
+struct AxisRange {
+  double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
+};
+
+struct CurvesStyle {
+  std::string title, x_title, y_title;
+  bool percent = false;  // y runs from 0 to 100 where no range is given
+  Band band = Band::kSd;
+  AxisRange x, y;
+  std::vector<CurveMark> marks;
+  int64_t panels = 0;                // 1 or 2 for two parts; 0: 2 where there are several methods
+  double width_pt = 0, height_pt = 0;  // of the picture; 0: by the number of panels
+  double scale = 2;                  // pixels per point
+};
+
+// "LOW:HIGH", either may be missing; "VALUE", "VALUE=LABEL" or "seen:VALUE=LABEL"; "WIDTHxHEIGHT" in points. Throw std::invalid_argument.
+AxisRange parse_axis_range(const std::string& text);
+CurveMark parse_curve_mark(const std::string& text);
+void parse_curves_size(const std::string& text, CurvesStyle& style);
+
+// All in pixels.
+struct CurvesLayout {
+  struct Panel {
+    Box area, plot;  // with titles and labels, and without
+    std::string title;
+    std::vector<int> parts;  // indices into CurveSet::parts
+  };
+  int width, height;
+  Heading heading;
+  int margin, legend_y;
+  int panel_title_size;       // height of text
+  int mark_size, mark_space;  // a mark's label, and from the plot to it
+  bool one_panel;
+  std::vector<Panel> panels;
+  Axes axes;  // the same for every panel
+};
+
+// Throws kUsage where the size leaves no room for the axes, for more than kMostMethods, and for a mark outside the range given.
+CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
+Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
+
+// How a line is drawn. With several methods the colour tells the method, and in one panel seen pairs are dashed.
+struct CurveLook {
+  Rgb colour;
+  bool dashed;
+};
+CurveLook curve_look(const CurveSet& set, bool one_panel, size_t method, size_t part);
+constexpr double kCurvePt = 1.5, kBandOpacity = 0.2;
+Dash curve_dash(const CurveLook& look, double scale);
+
+}  // namespace synpo

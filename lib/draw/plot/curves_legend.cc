@@ -1,0 +1,68 @@
+#include "draw/plot/curves_legend.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "draw/colour.h"
+#include "draw/canvas/stroke.h"
+
+namespace synpo {
+namespace {
+
+constexpr double kTextPt = 8.5, kSamplePt = 24, kSpacePt = 5, kBetweenPt = 14, kRowPt = 14;
+
+}  // namespace
+
+CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double scale, int width, const Font& font) {
+  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  CurvesLegend legend;
+  const auto add = [&](const std::string& name, const CurveLook& look, bool band) {
+    legend.entries.push_back({font.fitted(name, px(kTextPt), width - px(kSamplePt + kSpacePt)), look, band, 0, 0});
+  };
+  const auto banded = [&](const CurveSet::Method& method) {
+    return std::any_of(method.parts.begin(), method.parts.end(), [](const auto& part) { return part && !part->low.empty(); });
+  };
+  const bool styles = one_panel && set.parts.size() == 2;
+  for (size_t method = 0; method < set.methods.size(); ++method) {
+    const std::string& label = set.methods[method].label;
+    if (set.methods.size() == 1 && styles) {
+      for (size_t part = 0; part < 2; ++part)
+        add(label.empty() ? set.parts[part] + " pairs" : label + ", " + set.parts[part] + " pairs", curve_look(set, one_panel, 0, part),
+            set.methods[0].parts[part] && !set.methods[0].parts[part]->low.empty());
+    } else if (!label.empty()) {
+      add(label, {curve_look(set, false, method, 0).colour, false}, banded(set.methods[method]));
+    }
+  }
+  if (set.methods.size() > 1 && styles)
+    for (size_t part = 0; part < 2; ++part) add(set.parts[part] + " pairs", {kSoftInk, curve_look(set, true, 0, part).dashed}, false);
+
+  int x = 0, y = 0;
+  for (CurvesLegend::Entry& entry : legend.entries) {
+    const int wide = px(kSamplePt + kSpacePt) + font.width(entry.name, px(kTextPt));
+    if (x > 0 && x + wide > width) {
+      x = 0;
+      y += px(kRowPt);
+    }
+    entry.x = x;
+    entry.y = y;
+    x += wide + px(kBetweenPt);
+  }
+  legend.height = legend.entries.empty() ? 0 : y + px(kRowPt);
+  return legend;
+}
+
+void draw_curves_legend(Canvas& canvas, const CurvesLegend& legend, int x, int y, double scale) {
+  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  for (const CurvesLegend::Entry& entry : legend.entries) {
+    const Box sample = {x + entry.x, y + entry.y, px(kSamplePt), px(kTextPt)};
+    const double middle = sample.y + sample.height / 2.0;
+    const Mask whole = {sample, std::vector<uint8_t>(size_t(sample.width) * sample.height, 255)};
+    if (entry.band) canvas.paint(whole, entry.look.colour, kBandOpacity);
+    const std::vector<Point> line = {{sample.x + scale, middle}, {sample.right() - scale, middle}};
+    canvas.paint(stroke_mask(line, kCurvePt * scale, curve_dash(entry.look, scale), sample), entry.look.colour);
+    canvas.text(sample.right() + px(kSpacePt), sample.y + sample.height / 2, entry.name, px(kTextPt), kInk, Across::kLeft,
+                Upright::kMiddle);
+  }
+}
+
+}  // namespace synpo

@@ -1,0 +1,145 @@
+#include "draw/terminal/terminal.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "base/error.h"
+#include "stats/report/text_table.h"
+
+namespace synpo {
+namespace {
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value ? value : "";
+}
+
+// The nearest colour of the 6 x 6 x 6 cube.
+int cube_index(Rgb colour) {
+  const auto level = [](int value) {
+    constexpr int levels[] = {0, 95, 135, 175, 215, 255};
+    const auto nearer = [&](int a, int b) { return std::abs(a - value) < std::abs(b - value); };
+    return int(std::min_element(std::begin(levels), std::end(levels), nearer) - std::begin(levels));
+  };
+  return 16 + 36 * level(colour.r) + 6 * level(colour.g) + level(colour.b);
+}
+
+std::vector<std::string> characters(const std::string& text) {
+  std::vector<std::string> all;
+  for (char c : text) {
+    if ((c & 0xc0) != 0x80 || all.empty()) all.emplace_back();
+    all.back() += c;
+  }
+  return all;
+}
+
+std::string right(const std::string& text, size_t width) {
+  const size_t taken = text_width(text);
+  return taken < width ? std::string(width - taken, ' ') + text : text;
+}
+
+// "map" of map1, map2, map10; "" where that leaves more than `room` characters, or nothing, of a name.
+std::string common_stem(const std::vector<std::string>& names, size_t room) {
+  std::string stem = names[0].substr(0, names[0].find_first_of("0123456789"));
+  for (const std::string& name : names)
+    if (!name.starts_with(stem) || name.size() == stem.size() || text_width(name) - text_width(stem) > room) return "";
+  return stem;
+}
+
+// What tells the kinds of pairs apart where there is no colour.
+char mark_of(const HeatTable& table, int group) {
+  const std::string& name = table.groups[group].name;
+  return name == "seen" ? ' ' : name == "unseen" ? '*' : name[0];
+}
+
+// Names across: what they share in the corner and the rest above their columns, or else read downwards.
+std::string head(const HeatTable& table, size_t label, size_t cell) {
+  constexpr size_t kMostLines = 12;
+  const std::string stem = cell < 2 ? "" : common_stem(table.envs, cell - 1);
+  std::string text;
+  if (!stem.empty()) {
+    text = right(stem, label);
+    for (const std::string& env : table.envs) text += right(env.substr(stem.size()), cell);
+    return text + '\n';
+  }
+  std::vector<std::vector<std::string>> names;
+  size_t lines = 0;
+  for (const std::string& env : table.envs) {
+    names.push_back(characters(env));
+    lines = std::min(kMostLines, std::max(lines, names.back().size()));
+  }
+  for (size_t line = 0; line < lines; ++line) {
+    text += std::string(label, ' ');
+    for (const auto& name : names) {
+      const size_t skipped = lines - std::min(lines, name.size());
+      text += right(line < skipped ? " " : name[line - skipped], cell);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace
+
+TerminalColour environment_colour() {
+  const std::string term = variable("TERM"), depth = variable("COLORTERM");
+  if (!variable("NO_COLOR").empty() || term.empty() || term == "dumb") return TerminalColour::kNone;
+  return depth == "truecolor" || depth == "24bit" ? TerminalColour::kTrue : TerminalColour::k256;
+}
+
+TerminalColour terminal_colour(int fd) { return isatty(fd) ? environment_colour() : TerminalColour::kNone; }
+
+int terminal_width(int fd) {
+  winsize size{};
+  return isatty(fd) && ioctl(fd, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+std::string ground_code(Rgb ground, TerminalColour colour) {
+  if (colour == TerminalColour::kNone) return "";
+  const int ink = ink_on(ground).r == 0 ? 16 : 231;
+  if (colour == TerminalColour::k256) return concat("\033[38;5;", ink, ";48;5;", cube_index(ground), 'm');
+  return concat("\033[38;5;", ink, ";48;2;", int(ground.r), ';', int(ground.g), ';', int(ground.b), 'm');
+}
+
+std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width) {
+  const bool coloured = colour != TerminalColour::kNone;
+  size_t label = 4;
+  for (const std::string& task : table.tasks) label = std::max(label, text_width(task));
+  size_t cell = 4;
+  while (coloured && width > 0 && cell > 1 && label + 1 + cell * table.envs.size() > size_t(width)) --cell;
+  std::string text = table.caption.empty() ? "" : table.caption + '\n';
+  text += head(table, coloured ? label + 1 : label, cell);  // names above the numbers, not the marks
+  for (size_t task = 0; task < table.tasks.size(); ++task) {
+    text += table.tasks[task] + std::string(label + 1 - text_width(table.tasks[task]), ' ');
+    std::string line;
+    for (size_t env = 0; env < table.envs.size(); ++env) {
+      const HeatCell& at = table.at(task, env);
+      if (!at.evaluated()) {
+        line += std::string(cell - (coloured ? 0 : 1), ' ') + (coloured ? "" : " ");
+        continue;
+      }
+      const std::string rate = percent(at.rate(), 0);
+      if (coloured)
+        line += ground_code(ramp_colour(group_ramp(table, at.group, scheme), at.rate()), colour) +
+                right(cell > 2 ? rate : "", cell) + kPlainCode;
+      else
+        line += right(rate, cell - 1) + mark_of(table, at.group);
+    }
+    if (!coloured) line.resize(line.find_last_not_of(' ') + 1);
+    text += line + '\n';
+  }
+  text += '\n';
+  for (size_t i = 0; i < table.groups.size(); ++i) {
+    const HeatGroup& group = table.groups[i];
+    if (group.pairs == 0) continue;
+    if (coloured) text += ground_code(ramp_colour(group_ramp(table, int(i), scheme), group.rate()), colour) + "   " + kPlainCode + ' ';
+    text += concat(group.name, coloured || mark_of(table, int(i)) == ' ' ? "" : concat(" (", mark_of(table, int(i)), ")"), ": ",
+                   percent(group.rate()), " % of ", group.episodes, " episodes, ", group.pairs, group.pairs == 1 ? " pair\n" : " pairs\n");
+  }
+  return text;
+}
+
+}  // namespace synpo

@@ -1,0 +1,205 @@
+#include "nn/layers/conv.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "kernel/bilinear.h"
+
+namespace synpo {
+namespace {
+
+// What product p takes of each of the 3 x 3 taps: Weight along rows times Weight along columns.
+template <class A, class T>
+std::vector<T> taps_of_products() {
+  std::vector<T> taps;
+  for (int row = 0; row < A::kProducts; ++row)
+    for (int column = 0; column < A::kProducts; ++column)
+      for (int tap = 0; tap < 9; ++tap) taps.push_back(T(A::kWeight.at[row][tap / 3] * A::kWeight.at[column][tap % 3]));
+  return taps;
+}
+
+// The terms that are not zero, for Kernels::combine.
+template <class T>
+struct Terms {
+  std::vector<const T*> from;
+  std::vector<T> factor;
+  void add(T by, const T* values) {
+    if (by == 0) return;
+    from.push_back(values);
+    factor.push_back(by);
+  }
+  void combine(size_t count, T* to, bool accumulate = false) const {
+    kernels<T>().combine(int(from.size()), from.data(), factor.data(), count, to, accumulate);
+  }
+};
+
+}  // namespace
+
+template <class T>
+Conv<T>::Conv(int side, int in, int out, int kernel, int stride, Method method)
+    : side_(side), in_(in), out_(out), kernel_(kernel), stride_(stride), side_out_((side + stride - 1) / stride) {
+  const bool fast = method == Method::kFastest && kernel == 3 && stride == 1;
+  form_ = kernel == 1 && stride == 1             ? Form::kPlain
+          : fast && side == Toeplitz2::kOut      ? Form::kToeplitz
+          : fast && side % Winograd43::kOut == 0 ? Form::kWinograd
+                                                 : Form::kGathered;
+  const int tile = form_ == Form::kWinograd ? Winograd43::kOut : form_ == Form::kToeplitz ? Toeplitz2::kOut : 1;
+  if (form_ == Form::kWinograd) taps_ = taps_of_products<Winograd43, T>();
+  if (form_ == Form::kToeplitz) taps_ = taps_of_products<Toeplitz2, T>();
+  products_ = transformed() ? int(taps_.size()) / kTaps : 1;
+  rows_ = (side_out_ / tile) * (side_out_ / tile);
+  depth_ = transformed() ? in : kernel * kernel * in;
+  gradient_rows_ = products_ == 1 ? 64 : std::min(depth_, 128);
+  forward_.resize(products_);
+  backward_.resize(products_);
+}
+
+template <class T>
+const Transform<T>& Conv<T>::transform() const {
+  return form_ == Form::kWinograd ? kernels<T>().winograd43 : kernels<T>().toeplitz2;
+}
+
+template <class T>
+void Conv<T>::prepare(int p, const T* weight, bool training) {
+  if (transformed()) {
+    thread_local Buffer<T> factors;  // nothing of it outlives the call
+    const size_t plane = size_t(in_) * out_;
+    Terms<T> terms;
+    for (int tap = 0; tap < kTaps; ++tap) terms.add(taps_[p * kTaps + tap], weight + tap * plane);
+    terms.combine(plane, factors.grow(plane));
+    weight = factors.data();
+  }
+  forward_[p].pack(Op::kAsIs, depth_, out_, weight, out_);
+  if (training) backward_[p].pack(Op::kTransposed, out_, depth_, weight, out_);
+}
+
+// Calls body(at) for every tap of every output pixel of one sample, in the order of the gathered rows; `at` is the place of the tap's
+// pixel in x, or -1 outside the picture.
+template <class T>
+template <class Body>
+void Conv<T>::for_taps(Body&& body) const {
+  const int padding = kernel_ / 2;
+  for (int pixel = 0; pixel < side_out_ * side_out_; ++pixel)
+    for (int tap = 0; tap < kernel_ * kernel_; ++tap) {
+      const int r = pixel / side_out_ * stride_ + tap / kernel_ - padding, q = pixel % side_out_ * stride_ + tap % kernel_ - padding;
+      const bool inside = unsigned(r) < unsigned(side_) && unsigned(q) < unsigned(side_);
+      body(inside ? (r * side_ + q) * in_ : -1);
+    }
+}
+
+template <class T>
+void Conv<T>::gather_pixels(int samples, const T* x, T* inputs) const {
+  for (int n = 0; n < samples; ++n, x += x_size())
+    for_taps([&](int at) {
+      if (at >= 0)
+        std::memcpy(inputs, x + at, in_ * sizeof(T));
+      else
+        std::memset(inputs, 0, in_ * sizeof(T));
+      inputs += in_;
+    });
+}
+
+template <class T>
+void Conv<T>::gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const {
+  for (int n = 0; n < samples; ++n, dx += x_size())
+    for_taps([&](int at) {
+      for (int c = 0; at >= 0 && c < in_; ++c) dx[at + c] += dinputs[c];
+      dinputs += in_;
+    });
+}
+
+template <class T>
+void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
+  if (form_ == Form::kPlain) return gemm(Op::kAsIs, samples * rows_, x, depth_, forward_[0], y, out_);
+  for (; samples > unit(); samples -= unit(), x += unit() * x_size(), y += unit() * y_size()) forward(unit(), x, y, scratch);
+  const int rows = samples * rows_;
+  const size_t inputs_size = size_t(products_) * rows * depth_;
+  T* inputs = scratch.grow(inputs_size + (transformed() ? size_t(products_) * rows * out_ : 0));
+  T* outputs = transformed() ? inputs + inputs_size : y;
+  if (transformed())
+    transform().inputs(tiles(in_, samples, rows), x, inputs);
+  else
+    gather_pixels(samples, x, inputs);
+  for (int p = 0; p < products_; ++p)
+    gemm(Op::kAsIs, rows, inputs + size_t(p) * rows * depth_, depth_, forward_[p], outputs + size_t(p) * rows * out_, out_);
+  if (transformed()) transform().outputs(tiles(out_, samples, rows), outputs, y);
+}
+
+template <class T>
+void Conv<T>::reserve(Slab& slab, int samples) const {
+  if (keeps_gradients()) {
+    slab.gradients.grow(shard_count(samples, unit()) * dfactors_size());
+  } else {
+    slab.rows = size_t(samples) * rows_;
+    slab.inputs.grow(products_ * slab.rows * depth_);
+    slab.outputs.grow(products_ * slab.rows * out_);
+  }
+}
+
+template <class T>
+auto Conv<T>::operands(Slab& slab, Range part, const T* x, const T* dy, T* own) const -> Operands {
+  const int samples = part.size();
+  const size_t first = size_t(part.begin) * rows_, rows = keeps_gradients() ? size_t(samples) * rows_ : slab.rows;
+  T* inputs = keeps_gradients() ? own : slab.inputs.data() + first * depth_;
+  T* outputs = keeps_gradients() ? own + products_ * rows * depth_ : slab.outputs.data() + first * out_;
+  if (transformed()) {
+    transform().inputs(tiles(in_, samples, rows), x, inputs);
+    transform().outputs_adjoint(tiles(out_, samples, rows), dy, outputs);
+    return {inputs, outputs, rows};
+  }
+  if (keeps_gradients() && form_ == Form::kPlain) return {x, dy, rows};
+  gather_pixels(samples, x, inputs);
+  if (keeps_gradients()) return {inputs, dy, rows};
+  std::copy_n(dy, samples * y_size(), outputs);
+  return {inputs, outputs, rows};
+}
+
+template <class T>
+void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const {
+  const int samples = part.size(), rows = samples * rows_;
+  const size_t inputs_size = size_t(products_) * rows * depth_, outputs_size = size_t(products_) * rows * out_;
+  T* dinputs = scratch.grow(inputs_size + (keeps_gradients() ? inputs_size + outputs_size : 0));
+  const auto [inputs, outputs, stride] = operands(slab, part, x, dy, dinputs + inputs_size);
+  if (keeps_gradients()) {
+    T* gradients = slab.gradients.data() + part.begin / unit() * dfactors_size();
+    for (int p = 0; p < products_; ++p)
+      gemm(Op::kTransposed, Op::kAsIs, depth_, out_, rows, inputs + p * stride * depth_, depth_, outputs + p * stride * out_, out_,
+           gradients + size_t(p) * depth_ * out_, out_);
+  }
+  if (!dx) return;
+  if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, outputs, out_, backward_[0], dx, depth_, add_dx);
+  for (int p = 0; p < products_; ++p)
+    gemm(Op::kAsIs, rows, outputs + p * stride * out_, out_, backward_[p], dinputs + size_t(p) * rows * depth_, depth_);
+  if (!add_dx) std::fill_n(dx, samples * x_size(), T(0));
+  if (transformed())
+    transform().inputs_adjoint(tiles(in_, samples, rows), dinputs, dx);
+  else
+    gather_pixels_adjoint(samples, dinputs, dx);
+}
+
+template <class T>
+void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const {
+  const int blocks = shard_count(depth_, gradient_rows_), p = shard / blocks;
+  const Range range = shard_range(depth_, gradient_rows_, shard % blocks);
+  const size_t at = (size_t(p) * depth_ + range.begin) * out_;
+  if (keeps_gradients()) {
+    Terms<T> parts;
+    for (int part = 0; part < shard_count(samples, unit()); ++part) parts.add(1, slab.gradients.data() + part * dfactors_size() + at);
+    return parts.combine(size_t(range.size()) * out_, dfactors + at, accumulate);
+  }
+  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_,
+       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + at, out_, accumulate);
+}
+
+template <class T>
+void Conv<T>::finish_gradient(int tap, const T* dfactors, T* dweight) const {
+  const size_t plane = size_t(in_) * out_;
+  Terms<T> terms;
+  for (int p = 0; p < products_; ++p) terms.add(taps_[p * kTaps + tap], dfactors + p * plane);
+  terms.combine(plane, dweight + tap * plane);
+}
+
+template class Conv<float>;
+template class Conv<double>;
+
+}  // namespace synpo

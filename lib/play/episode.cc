@@ -1,0 +1,113 @@
+#include "play/episode.h"
+
+#include <cstdio>
+
+#include "base/error.h"
+
+namespace synpo {
+namespace {
+
+std::string money(int cents) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", cents / 100.0);
+  return text;
+}
+
+}  // namespace
+
+WorldState episode_start(const World& world, EnvTask pair, uint64_t seed, Purpose purpose, int64_t episode) {
+  Random random(seed, purpose, world.pair_number(pair), uint64_t(episode));
+  return world.reset(pair.env, random);
+}
+
+Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents, const WorldStep& last,
+                         uint64_t seed, int64_t number, int window) {
+  const Environment& env = world.environments()[episode.pair.env];
+  Trajectory t;
+  t.world = world.name();
+  t.rules = world.rules();
+  t.env = env.name;
+  t.task = world.task_names()[episode.pair.task];
+  t.env_hash = env.hash;
+  t.window = window;
+  t.seed = seed;
+  t.episode = number;
+  t.start = world.start_places(episode.pair.env, episode.start);
+  t.actions = episode.actions;
+  if (episode.labels != episode.actions) t.labels = episode.labels;
+  t.reward_cents = reward_cents;
+  t.success = last.success;
+  t.terminated = last.terminated;
+  t.truncated = last.truncated;
+  return t;
+}
+
+Trajectory expert_episode(const World& world, EnvTask pair, uint64_t seed, int64_t episode, double noise, int window) {
+  Random random(seed, Purpose::kNoise, world.pair_number(pair), uint64_t(episode));
+  Episode played = {pair, episode_start(world, pair, seed, Purpose::kEpisodeStart, episode), {}, {}};
+  std::vector<int> rewards;
+  WorldState state = played.start;
+  WorldStep step = {};
+  while (!step.ended()) {
+    const int label = world.expert(pair, state);
+    const int action = noise > 0 && random.uniform() < noise ? int(random.below(uint32_t(world.moves()))) : label;
+    played.labels.push_back(uint8_t(label));
+    played.actions.push_back(uint8_t(action));
+    step = world.step(pair, state, action);
+    rewards.push_back(step.reward_cents);
+  }
+  return to_trajectory(world, played, rewards, step, seed, episode, window);
+}
+
+Episode replay(const World& world, const Trajectory& t) {
+  if (t.world != world.name()) fail(Exit::kData, "world ", quoted(t.world), ", expected ", quoted(world.name()));
+  if (t.rules != world.rules()) fail(Exit::kData, "rules version ", t.rules, ", this build has ", world.rules());
+  const EnvTask pair = {world.env_index(t.env), world.task_index(t.task)};
+  if (pair.env < 0) fail(Exit::kData, "unknown env ", quoted(t.env), " (other maps? see -w)");
+  if (pair.task < 0) fail(Exit::kData, "unknown task ", quoted(t.task));
+  if (t.env_hash != world.environments()[pair.env].hash)
+    fail(Exit::kData, "env ", quoted(t.env), " is not the one of that name here (other maps? see -w)");
+  for (const auto& [name, list] : {std::pair{"actions", &t.actions}, {"labels", &t.labels}})
+    for (const uint8_t action : *list)
+      if (action >= world.actions())
+        fail(Exit::kData, "field '", name, "': found '", int(action), "', expected a whole number from 0 to ", world.actions() - 1);
+  Episode episode = {pair, world.start_state(pair.env, t.start), t.actions, t.labels.empty() ? t.actions : t.labels};
+  WorldState state = episode.start;
+  for (size_t i = 0; i < t.actions.size(); ++i) {
+    const WorldStep step = world.step(pair, state, t.actions[i]);
+    if (step.reward_cents != t.reward_cents[i])
+      fail(Exit::kData, "replay gives reward ", money(step.reward_cents), " at step ", i + 1, ", file says ", money(t.reward_cents[i]),
+           ": other maps?");
+    const bool last = i + 1 == t.actions.size();
+    if (step.ended() && !last) fail(Exit::kData, "replay ends at step ", i + 1, ", file goes on to ", t.actions.size());
+    if (last && (step.terminated != t.terminated || step.truncated != t.truncated || step.success != t.success))
+      fail(Exit::kData, "replay and file differ in success, terminated or truncated");
+  }
+  return episode;
+}
+
+Trajectory relabelled(const World& world, const Trajectory& trajectory) {
+  const Episode episode = replay(world, trajectory);
+  Trajectory out = trajectory;
+  out.labels.clear();
+  WorldState state = episode.start;
+  for (const uint8_t action : episode.actions) {
+    out.labels.push_back(uint8_t(world.expert(episode.pair, state)));
+    world.step(episode.pair, state, action);
+  }
+  if (out.labels == out.actions) out.labels.clear();
+  return out;
+}
+
+std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only) {
+  std::vector<EnvTask> pairs;
+  for (const PairRow& row : rows) {
+    const EnvTask pair = {world.env_index(row.env), world.task_index(row.task)};
+    if (pair.env < 0) fail(Exit::kData, "pairs: unknown env ", quoted(row.env), " (other maps?)");
+    if (pair.task < 0) fail(Exit::kData, "pairs: unknown task ", quoted(row.task));
+    if (row.seen || !seen_only) pairs.push_back(pair);
+  }
+  return pairs;
+}
+
+}  // namespace synpo

@@ -1,0 +1,45 @@
+// Success of a policy on pairs, every episode run to its own end.
+#pragma once
+#include <functional>
+#include <vector>
+
+#include "base/parallel.h"
+#include "format/trajectory.h"
+#include "format/run_log.h"
+#include "play/model.h"
+
+namespace synpo {
+
+struct PairResult {
+  int64_t episodes = 0, successes = 0, wrong = 0, timeouts = 0, reward_cents = 0, length = 0;
+  void add(const PairResult& other);
+};
+
+// An episode to run: start state from (seed, kEvaluation, pair, number).
+struct EvalEpisode {
+  int pair;  // position in the list of pairs
+  int64_t number;
+};
+
+struct EvalOptions {
+  uint64_t seed = 1;
+  int window = 1;
+  double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
+};
+
+// Called with every episode in the order of the list, one at a time, from any thread.
+using EpisodeSink = std::function<void(const Trajectory&)>;
+
+// Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the order of
+// `pairs`; neither threads nor what else is in the list changes an episode.
+std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
+                                 const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink = nullptr,
+                                 const std::function<void(size_t done)>& progress = nullptr);
+
+// Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones
+// at every call while no pair is seen that was not. Unseen are pairs of an environment and a task that other seen pairs have. NaN where there are no such
+// pairs. The weights are given apart: a run may evaluate others than those it learns with.
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
+                                      int episodes);
+
+}  // namespace synpo

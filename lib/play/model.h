@@ -1,0 +1,58 @@
+// A policy together with its weights and the world it was made for: what a checkpoint holds.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "format/checkpoint.h"
+#include "play/episode.h"
+#include "nn/buffer.h"
+#include "policy/policy.h"
+#include "world/world.h"
+
+namespace synpo {
+
+const std::vector<std::string>& method_names();
+// Throws kData for another name. There is one for float and one for double.
+template <class T = float>
+std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicyShape& shape);
+std::map<std::string, int64_t> describe_shape(const PolicyShape& shape);
+// Throws kData for sizes that are missing or out of bounds.
+PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes);
+
+struct Model {
+  std::string method;
+  PolicyShape shape;
+  int window = 1;
+  std::vector<EnvTask> seen;
+  uint64_t seed = 0;
+  int64_t updates = 0, states = 0;
+  std::unique_ptr<Policy<float>> policy;
+  Buffer<float> parameters, statistics;
+
+  bool is_seen(EnvTask pair) const;
+};
+
+// Fresh weights; the window is 1 and no pair is seen.
+Model fresh_model(const std::string& method, const PolicyShape& shape, const InitOptions& options);
+
+// Whether some of its environments lie in files of their own.
+bool lies_in_files(const Checkpoint& checkpoint);
+// The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where they are not there, are other
+// ones, or don't fit this build, kUsage where there is no source.
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source = nullptr);
+// The same with the argument of -w, which may be empty. Throws kUsage where a checkpoint that holds its environments is given one.
+std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source);
+// Throws kData when tensors or world don't fit, or features come from another extractor.
+Model load_model(const Checkpoint& checkpoint, const World& world);
+
+// Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back, where all are there and have their shapes:
+// kData otherwise.
+void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values);
+void check_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout);
+void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values);
+
+// Everything but the tensors.
+Checkpoint describe_model(const Model& model, const World& world);
+
+}  // namespace synpo

@@ -1,0 +1,43 @@
+// The stream of trajectories that a trainer reads: parsed, replayed, held against the seen set, hashed.
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/hash.h"
+#include "base/files/io.h"
+#include "play/episode.h"
+
+namespace synpo {
+
+class TrajectoryStream {
+ public:
+  // Trajectories of pairs outside `seen` are refused (an empty list takes all). The window of the first is that of all; -1 lets the first
+  // decide.
+  TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window = -1);
+
+  // The next trajectory; nothing at the end. Errors are kData with the line.
+  std::optional<Episode> next();
+  // Reads on without parsing until `lines` lines have come in all or the stream ends; how many have come by then.
+  uint64_t length_up_to(uint64_t lines);
+  // Passes over `lines` lines without parsing and checks that they are those that `hash` was made of (kData).
+  void skip(uint64_t lines, uint64_t hash);
+
+  uint64_t lines() const { return lines_; }
+  uint64_t hash() const { return hash_.value(); }
+  int window() const { return window_; }
+  bool ended() const { return ended_; }
+
+ private:
+  Input& input_;
+  const World& world_;
+  std::vector<EnvTask> seen_;
+  std::vector<bool> allowed_;  // by pair number
+  int window_;
+  bool ended_ = false;
+  uint64_t lines_ = 0;
+  Hash hash_;
+  std::string line_;
+};
+
+}  // namespace synpo

@@ -1,0 +1,31 @@
+// The disentanglement losses (supplement, Section 2): what environment, or task, a row x comes from is told by
+// softmax(f(x)^T e) over the embeddings e of all environments, or tasks; f is a perceptron.
+#pragma once
+#include <string>
+
+#include "nn/layers/perceptron.h"
+#include "policy/head/embedding_table.h"
+
+namespace synpo {
+
+template <class T>
+class Recogniser {
+ public:
+  Recogniser(const std::string& name, int in, int hidden, const EmbeddingTable<T>& table, Layout& parameters);
+
+  void initialise(InitStream& stream, T* parameters) const { f_.initialise(stream, parameters); }
+
+  // The mean cross-entropy of x [rows, in] against truth [rows]. `weight` times its gradients are added to dx, to the parameters' gradient
+  // and to the table's.
+  double step(Parallel& parallel, int rows, const T* x, const int* truth, EmbeddingTable<T>& table, double weight, const T* parameters, T* dx,
+              T* gradient);
+
+ private:
+  Perceptron<T> f_;
+  Buffer<T> df_, scores_, dscores_;
+};
+
+extern template class Recogniser<float>;
+extern template class Recogniser<double>;
+
+}  // namespace synpo

@@ -1,0 +1,73 @@
+#include "policy/method/encoded_policy.h"
+
+#include <algorithm>
+
+#include "policy/head/head_losses.h"
+#include "policy/encoder/resnet.h"
+#include "policy/encoder/temporal_net.h"
+
+namespace synpo {
+namespace {
+
+template <class T>
+std::unique_ptr<Encoder<T>> make_encoder(const PolicyShape& shape, Layout& parameters, Layout& statistics) {
+  if (shape.sight == Sight::kFeatures) return std::make_unique<TemporalNet<T>>(shape.views, shape.feature, parameters);
+  return std::make_unique<ResNet<T>>(shape.channels, shape.feature, shape.normalise_input, parameters, statistics);
+}
+
+}  // namespace
+
+template <class T>
+EncodedPolicy<T>::EncodedPolicy(const PolicyShape& shape)
+    : shape_(shape), encoder_(make_encoder<T>(shape, this->parameters_, this->statistics_)), behind_encoder_(this->parameters_.total()) {}
+
+template <class T>
+void EncodedPolicy<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
+  std::fill_n(parameters, this->parameters_.total(), T(0));
+  encoder_->initialise(options.seed, parameters, statistics);
+  InitStream stream(options.seed, 1);
+  initialise_head(stream, options.embedding_sd, parameters);
+}
+
+template <class T>
+Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
+                              T* gradient, T* logits) {
+  const size_t size = size_t(batch.size) * shape_.feature;
+  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
+  T* dpsi = dpsi_.grow(size);
+  std::fill_n(dpsi, size, T(0));
+  if (batch.psi)
+    std::copy_n(batch.psi, size, psi_.grow(size));
+  else
+    encoder_->forward(parallel, batch.size, batch.observations, parameters, statistics, psi_.grow(size), batch.frozen_statistics);
+  Losses losses = head_step(parallel, batch, weights, parameters, psi_.data(), logits, dpsi, gradient);
+  if (!batch.psi) encoder_->backward(parallel, parameters, dpsi, gradient);
+  losses.add_up(weights);
+  return losses;
+}
+
+template <class T>
+double EncodedPolicy<T>::score_loss(Parallel& parallel, const StepBatch<T>& batch, const T* psi, const T* logits, T* dlogits, T* dpsi) const {
+  if (batch.objective) return batch.objective->apply(parallel, batch.size, psi, logits, dlogits, dpsi);
+  return policy_loss(parallel, batch.size, shape_.actions, logits, batch.label, dlogits);
+}
+
+template <class T>
+void EncodedPolicy<T>::prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
+                                         const std::vector<std::pair<int, int>>& pairs) {
+  encoder_->prepare_inference(parallel, parameters, statistics);
+  prepare_head(parallel, parameters, pairs);
+}
+
+template <class T>
+void EncodedPolicy<T>::infer(int thread, int size, const uint8_t* observations, const int* pair, T* logits, T* psi) {
+  std::vector<T> own(psi ? 0 : size_t(size) * shape_.feature);
+  if (!psi) psi = own.data();
+  encoder_->infer(thread, size, observations, psi);
+  infer_head(size, psi, pair, logits);
+}
+
+template class EncodedPolicy<float>;
+template class EncodedPolicy<double>;
+
+}  // namespace synpo

@@ -1,0 +1,47 @@
+// Successor features: a reward that is linear in features, and their discounted sum.
+//
+//   r(s, a) = phi(s, a)^T e_task,   psi(s, a; z) = phi(s, a) + gamma psi(s', a'; z),   Q_z(s, a) = psi(s, a; z)^T e_task
+// phi is a perceptron over the state's feature, psi one over the feature, e_env and e_task; s' and a' are the next state and the
+// expert's action there. The policy takes the action of the highest Q. What psi is learned from: SfLoss.
+#pragma once
+#include "nn/layers/perceptron.h"
+#include "policy/head/embedding_table.h"
+#include "policy/method/encoded_policy.h"
+
+namespace synpo {
+
+template <class T>
+class Sf : public EncodedPolicy<T> {
+ public:
+  explicit Sf(const PolicyShape& shape);
+
+  BatchNeeds needs() const override;
+  double temperature() const override { return shape().sf_loss == SfLoss::kCrossEntropy ? kTemperature : 0; }
+ protected:
+  void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
+                   T* dpsi, T* gradient) override;
+  void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
+  void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
+
+ private:
+  using EncodedPolicy<T>::shape;
+  int inputs() const { return shape().feature + 2 * shape().embedding; }
+  void make_input(const T* feature, int env, int task, T* x) const;
+  // values [actions] = features [actions, embedding] w.
+  void values(const T* features, const T* w, T* values) const;
+  // Mean square of a temporal difference; dpsi = its gradient. Targets are held fixed.
+  double temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi, T* dpsi) const;
+  // Mean square of Q's distance from the planner's; dq = its gradient.
+  double planner_distance(const StepBatch<T>& batch, const T* q, T* dq) const;
+
+  EmbeddingTable<T> env_, task_;
+  Perceptron<T> phi_, psi_;
+  Buffer<T> x_, dx_, dphi_, dpsi_, dq_;
+  std::vector<std::pair<int, int>> pairs_;  // for inference
+};
+
+extern template class Sf<float>;
+extern template class Sf<double>;
+
+}  // namespace synpo

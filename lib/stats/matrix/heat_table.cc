@@ -1,0 +1,140 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include "base/error.h"
+#include "stats/matrix/heat_table.h"
+
+namespace synpo {
+namespace {
+
+// Names in the order in which they appear first, with their positions.
+struct Names {
+  std::vector<std::string> list;
+  std::map<std::string, size_t> place;
+  void add(const std::string& name) {
+    if (place.emplace(name, list.size()).second) list.push_back(name);
+  }
+};
+
+std::string joined(const std::set<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + quoted(name);
+  return out;
+}
+
+std::string counted(int64_t n, const char* noun) { return concat(n, " ", noun, n == 1 ? "" : "s"); }
+
+std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTable& table) {
+  std::set<std::string> runs;
+  for (const MatrixRow* row : rows)
+    if (!row->run.empty()) runs.insert(row->run);
+  int64_t fewest = INT64_MAX, most = 0;
+  for (const HeatCell& cell : table.cells)
+    if (cell.evaluated()) {
+      fewest = std::min(fewest, cell.episodes);
+      most = std::max(most, cell.episodes);
+    }
+  std::string out = rows.front()->method;
+  const auto add = [&](const std::string& text) { out += (out.empty() ? "" : ", ") + text; };
+  const int64_t window = rows.front()->window;
+  if (window != 1) add(window == 0 ? "blind" : concat("window radius ", window));
+  if (!runs.empty()) add(counted(int64_t(runs.size()), "run"));
+  if (most > 0) add(fewest == most ? counted(most, "episode") + " a pair" : concat(fewest, " to ", most, " episodes a pair"));
+  return out;
+}
+
+void count(HeatGroup& group, const HeatCell& cell) {
+  ++group.pairs;
+  group.episodes += cell.episodes;
+  group.successes += cell.successes;
+}
+
+}  // namespace
+
+HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_part) {
+  std::vector<const MatrixRow*> rows;
+  std::set<std::string> methods;
+  std::set<std::pair<std::string, int64_t>> worlds;  // with the window
+  Names envs, tasks;
+  std::set<std::string> part_names;
+  for (const MatrixRow& row : matrix.rows) {
+    if (!method.empty() && row.method != method) continue;
+    rows.push_back(&row);
+    methods.insert(row.method);
+    worlds.emplace(row.world, row.window);
+    envs.add(row.env);
+    tasks.add(row.task);
+    if (!row.part.empty()) part_names.insert(row.part);
+  }
+  if (rows.empty()) fail(Exit::kData, "no row", method.empty() ? "" : " of the method " + quoted(method));
+  if (methods.size() > 1) fail(Exit::kData, "rows of several methods (", joined(methods), "): choose one with --method");
+  if (worlds.size() > 1) {
+    std::set<std::string> names;
+    for (const auto& [world, window] : worlds) names.insert(concat(world, " with window ", window));
+    fail(Exit::kData, "rows of several worlds (", joined(names), "): draw them one by one");
+  }
+  if (by_part && part_names.empty()) fail(Exit::kData, "no column part to colour by");
+  if (const size_t side = std::max(tasks.list.size(), envs.list.size()); side > kMostHeatNames)
+    fail(Exit::kData, side, tasks.list.size() == side ? " tasks" : " environments", ": expected at most ", kMostHeatNames);
+  if (envs.list.size() * tasks.list.size() > kMostHeatCells)
+    fail(Exit::kData, tasks.list.size(), " tasks x ", envs.list.size(), " environments: expected at most ", kMostHeatCells, " cells");
+
+  HeatTable table;
+  table.envs = envs.list;
+  table.tasks = tasks.list;
+  table.cells.resize(envs.list.size() * tasks.list.size());
+  table.by_part = by_part;
+  for (const std::string& name : part_names) table.parts.push_back({name});
+  std::vector<HeatGroup> groups = {{"seen"}, {"unseen"}};
+  if (by_part) {
+    groups = table.parts;
+    groups.push_back({"unnamed"});
+  }
+  for (const MatrixRow* row : rows) {
+    HeatCell& cell = table.cells[tasks.place[row->task] * envs.list.size() + envs.place[row->env]];
+    const int part = row->part.empty() ? -1 : int(std::distance(part_names.begin(), part_names.find(row->part)));
+    const int group = !by_part ? (row->seen ? 0 : 1) : part >= 0 ? part : int(groups.size()) - 1;
+    const auto differs = [&](const char* how) {
+      fail(Exit::kData, "the pair ", quoted(row->env), " ", quoted(row->task), " ", how, ": draw the runs one by one");
+    };
+    if (cell.group >= 0 && cell.part != part) differs("is in different parts in two rows");
+    if (cell.group >= 0 && cell.group != group) differs("is seen in one row and unseen in another");
+    cell.group = group;
+    cell.part = part;
+    cell.episodes += row->episodes;
+    cell.successes += row->successes;
+  }
+
+  std::vector<bool> occurs(groups.size());
+  for (const HeatCell& cell : table.cells) {
+    if (cell.group < 0) continue;
+    occurs[cell.group] = true;
+    if (!cell.evaluated()) continue;
+    count(groups[cell.group], cell);
+    if (cell.part >= 0) count(table.parts[cell.part], cell);
+  }
+  std::vector<int> renumbered(groups.size(), -1);
+  for (size_t i = 0; i < groups.size(); ++i)
+    if (occurs[i]) {
+      renumbered[i] = int(table.groups.size());
+      table.groups.push_back(groups[i]);
+    }
+  for (HeatCell& cell : table.cells)
+    if (cell.group >= 0) cell.group = renumbered[cell.group];
+  table.caption = caption_of(rows, table);
+  return table;
+}
+
+std::string rate_text(int64_t successes, int64_t episodes) {
+  int64_t hundredths = std::llround(100.0 * double(successes) / double(episodes));
+  if (successes > 0) hundredths = std::max<int64_t>(hundredths, 1);
+  if (successes < episodes) hundredths = std::min<int64_t>(hundredths, 99);
+  char text[16];
+  std::snprintf(text, sizeof text, "%d.%02d", int(hundredths / 100), int(hundredths % 100));
+  return text;
+}
+
+}  // namespace synpo

@@ -1,0 +1,120 @@
+#include "stats/report/text_table.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+
+#include "base/error.h"
+
+namespace synpo {
+namespace {
+
+// Values of runs that differ by less than rounding are alike.
+bool alike(const MeanSd& values) { return values.sd <= 1e-12 * (1 + std::abs(values.mean)); }
+
+std::string escaped(const std::string& cell, TableFormat format) {
+  std::string out;
+  for (size_t i = 0; i < cell.size(); ++i) {
+    const char c = cell[i];
+    const bool pm = c == '+' && i + 1 < cell.size() && cell[i + 1] == '-';
+    if (pm) {
+      out += format == TableFormat::kLatex ? "$\\pm$" : "\xc2\xb1";
+      ++i;
+    } else if (format == TableFormat::kMarkdown) {
+      if (std::string("|\\*_`<[").find(c) != std::string::npos) out += '\\';
+      out += c;
+    } else if (c == '\\') {
+      out += "\\textbackslash{}";
+    } else if (c == '~' || c == '^') {
+      out += concat('\\', c, "{}");
+    } else {
+      if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string latex(const std::vector<std::vector<std::string>>& rows, size_t left) {
+  std::string text = "\\begin{tabular}{";
+  for (size_t i = 0; i < rows[0].size(); ++i) text += i < left ? 'l' : 'r';
+  text += "}\n\\toprule\n";
+  for (size_t r = 0; r < rows.size(); ++r) {
+    for (size_t i = 0; i < rows[r].size(); ++i) text += (i ? " & " : "") + escaped(rows[r][i], TableFormat::kLatex);
+    text += r == 0 ? " \\\\\n\\midrule\n" : " \\\\\n";
+  }
+  return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+}  // namespace
+
+size_t text_width(const std::string& text) {
+  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
+}
+
+std::string decimal(double value, int digits) {
+  if (std::isnan(value)) return "-";
+  char text[400];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  const bool zero = std::string(text).find_first_of("123456789") == std::string::npos;
+  return zero && text[0] == '-' ? text + 1 : text;
+}
+
+std::string percent(double rate, int digits) {
+  const double step = std::pow(10, -digits);
+  if (rate > 0 && rate < 1) return decimal(std::clamp(rate * 100, step, 100 - step), digits);
+  return decimal(rate * 100, digits);
+}
+
+std::string percent_range(const Interval& interval) { return range_text(interval, find_measure("success")); }
+
+std::string range_text(const Interval& interval, const MeasureKind& kind) {
+  if (std::isnan(interval.low)) return "-";
+  return decimal(interval.low * kind.scale(), kind.digits) + " to " + decimal(interval.high * kind.scale(), kind.digits);
+}
+
+std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind) {
+  const double mean = over_runs.mean * kind.scale(), sd = over_runs.sd * kind.scale();
+  if (std::isnan(sd)) return kind.rate ? percent(over_runs.mean, kind.digits) : decimal(mean, kind.digits);
+  if (alike(over_runs)) return concat(decimal(mean, kind.digits), " (", over_runs.count, " alike)");
+  int digits = kind.digits;
+  std::string shown_mean, shown_sd;
+  for (; digits <= kind.digits + 6; ++digits) {
+    shown_mean = decimal(mean, digits);
+    shown_sd = decimal(sd, digits);
+    const double value = std::atof(shown_mean.c_str());
+    if (std::atof(shown_sd.c_str()) > 0 && !(kind.rate && (value == 0 || value == 100))) break;
+  }
+  return shown_mean + " +- " + shown_sd;
+}
+
+std::string table_text(const std::vector<std::vector<std::string>>& rows, TableFormat format, size_t left) {
+  if (format == TableFormat::kLatex) return latex(rows, left);
+  const bool markdown = format == TableFormat::kMarkdown;
+  std::vector<std::vector<std::string>> cells = rows;
+  std::vector<size_t> widths(rows[0].size(), markdown ? 3 : 0);
+  for (auto& row : cells) {
+    for (size_t i = 0; i < row.size(); ++i) {
+      if (markdown) row[i] = escaped(row[i], format);
+      widths[i] = std::max(widths[i], text_width(row[i]));
+    }
+  }
+  std::string text;
+  for (size_t r = 0; r < cells.size(); ++r) {
+    std::string line;
+    for (size_t i = 0; i < cells[r].size(); ++i) {
+      const std::string blanks(widths[i] - text_width(cells[r][i]), ' ');
+      line += markdown ? (i ? " " : "| ") : i ? "  " : "";
+      line += i < left ? cells[r][i] + blanks : blanks + cells[r][i];
+      if (markdown) line += " |";
+    }
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
+    if (!markdown || r > 0) continue;
+    for (size_t i = 0; i < widths.size(); ++i) text += (i ? " " : "| ") + std::string(widths[i] - 1, '-') + (i < left ? "- |" : ": |");
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace synpo

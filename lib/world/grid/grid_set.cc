@@ -1,0 +1,136 @@
+#include "world/grid/grid_set.h"
+
+#include <algorithm>
+#include <set>
+
+#include "base/error.h"
+#include "world/grid/view.h"
+
+namespace synpo {
+namespace {
+
+constexpr char kAgentName[] = "agent";
+
+std::string treasure_name(int i) { return std::string(1, kTreasureLetters[i]); }
+
+std::pair<int, int> place(int cell) { return {cell / kGridSide, cell % kGridSide}; }
+
+// The free cell that `places` gives under `name`.
+uint8_t start_cell(const Maze& maze, const StartPlaces& places, const std::string& name) {
+  const auto found = places.find(name);
+  if (found == places.end()) fail(Exit::kData, "field 'start': no place for ", quoted(name));
+  const auto [row, column] = found->second;
+  if (row < 0 || column < 0 || row >= kGridSide || column >= kGridSide || maze.wall[row * kGridSide + column])
+    fail(Exit::kData, "field 'start': ", quoted(name), " at row ", row, ", column ", column, " is not on the floor of ", maze.name);
+  return uint8_t(row * kGridSide + column);
+}
+
+}  // namespace
+
+WorldState to_world_state(const GridState& state) {
+  WorldState out;
+  out.bytes[0] = state.now.agent;
+  std::copy(state.now.treasures.begin(), state.now.treasures.end(), out.bytes.begin() + 1);
+  out.bytes[1 + kTreasures] = state.picked;
+  out.steps = state.steps;
+  return out;
+}
+
+GridState to_grid_state(const WorldState& state) {
+  GridState out;
+  out.now.agent = state.bytes[0];
+  std::copy_n(state.bytes.begin() + 1, kTreasures, out.now.treasures.begin());
+  out.picked = state.bytes[1 + kTreasures];
+  out.steps = state.steps;
+  return out;
+}
+
+GridSet::GridSet(std::vector<Maze> mazes) : mazes_(std::move(mazes)) {
+  std::set<std::string> names;
+  for (const Maze& maze : mazes_) {
+    if (!names.insert(maze.name).second) fail(Exit::kData, "two environments are named ", quoted(maze.name));
+    planners_.emplace_back(maze);
+    environments_.push_back({maze.name, maze.hash, maze.canonical_text()});
+  }
+}
+
+GridSet GridSet::open(const std::string& world) { return GridSet(open_mazes(world)); }
+
+const std::string& GridSet::name() const {
+  static const std::string name = "gridworld";
+  return name;
+}
+
+const std::vector<std::string>& GridSet::task_names() const { return grid_task_names(); }
+
+const std::vector<std::string>& GridSet::action_names() const {
+  static const std::vector<std::string> names(kGridActionNames, kGridActionNames + kGridActions);
+  return names;
+}
+
+WorldState GridSet::reset(int env, Random& random) const { return to_world_state(grid_reset(mazes_[env], random)); }
+
+WorldStep GridSet::step(EnvTask pair, WorldState& state, int action) const {
+  GridState grid = to_grid_state(state);
+  const WorldStep step = grid_step(mazes_[pair.env], task(pair), grid, action);
+  state = to_world_state(grid);
+  return step;
+}
+
+int GridSet::expert(EnvTask pair, const WorldState& state) const { return planners_[pair.env].action(task(pair), to_grid_state(state)); }
+
+void GridSet::action_values(EnvTask pair, const WorldState& state, int* cents) const {
+  const std::array<int, kGridActions> q = planners_[pair.env].q_cents(task(pair), to_grid_state(state));
+  std::copy(q.begin(), q.end(), cents);
+}
+
+bool GridSet::at_choice(EnvTask, const WorldState& state) const { return treasure_under_agent(to_grid_state(state).now) >= 0; }
+
+size_t GridSet::observation_size() const { return size_t(kGridCells) * kHistory; }
+
+void GridSet::observe(int env, const StateHistory& history, int window, uint8_t* observation) const {
+  GridHistory frames;
+  for (int i = 0; i < kHistory; ++i) frames.frames[i] = to_grid_state(history.states[i]).now;
+  frames.count = history.count;
+  draw_history(mazes_[env], frames, window, observation);
+}
+
+StartPlaces GridSet::start_places(int, const WorldState& start) const {
+  const GridFrame frame = to_grid_state(start).now;
+  StartPlaces places = {{kAgentName, place(frame.agent)}};
+  for (int i = 0; i < kTreasures; ++i) places[treasure_name(i)] = place(frame.treasures[i]);
+  return places;
+}
+
+WorldState GridSet::start_state(int env, const StartPlaces& places) const {
+  const Maze& maze = mazes_[env];
+  GridState start;
+  start.now.agent = start_cell(maze, places, kAgentName);
+  for (int i = 0; i < kTreasures; ++i) {
+    start.now.treasures[i] = start_cell(maze, places, treasure_name(i));
+    for (int j = 0; j < i; ++j)
+      if (start.now.treasures[i] == start.now.treasures[j]) fail(Exit::kData, "field 'start': two treasures on one cell");
+  }
+  if (places.size() != 1 + kTreasures)
+    fail(Exit::kData, "field 'start': found ", places.size(), " places, expected the agent's and those of ", kTreasures, " treasures");
+  return to_world_state(start);
+}
+
+bool GridSet::valid(EnvTask pair, const WorldState& state) const {
+  const GridState grid = to_grid_state(state);
+  const Maze& maze = mazes_[pair.env];
+  if (grid.picked > 1 || grid.steps >= kStepLimit || maze.wall[grid.now.agent] || to_world_state(grid) != state) return false;
+  for (int i = 0; i < kTreasures; ++i) {
+    const bool gone = grid.picked == 1 && i == task(pair).first;
+    if (gone != (grid.now.treasures[i] == kPicked) || (!gone && maze.wall[grid.now.treasures[i]])) return false;
+  }
+  return true;
+}
+
+const GridSet& as_gridworld(const World& world, const std::string& what) {
+  const GridSet* grid = dynamic_cast<const GridSet*>(&world);
+  if (!grid) fail(Exit::kUsage, what, " needs gridworld, found world ", quoted(world.name()));
+  return *grid;
+}
+
+}  // namespace synpo

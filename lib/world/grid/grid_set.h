@@ -1,0 +1,61 @@
+// GridWorld as a World: mazes, their planners, and tasks.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "world/grid/planner.h"
+#include "world/world.h"
+
+namespace synpo {
+
+WorldState to_world_state(const GridState& state);
+GridState to_grid_state(const WorldState& state);
+
+class GridSet : public World {
+ public:
+  // Throws kData for two mazes of one name.
+  explicit GridSet(std::vector<Maze> mazes);
+  // Copies would leave the planners with the original's mazes.
+  GridSet(GridSet&&) = default;
+  GridSet& operator=(GridSet&&) = default;
+
+  // By the world's name, as open_mazes() has it.
+  static GridSet open(const std::string& world);
+
+  const std::vector<Maze>& mazes() const { return mazes_; }
+  const Maze& maze(int env) const { return mazes_[env]; }
+  const Planner& planner(int env) const { return planners_[env]; }
+  const std::vector<Task>& tasks() const { return grid_tasks(); }
+
+  const std::string& name() const override;
+  int rules() const override { return kGridRules; }
+  const std::vector<Environment>& environments() const override { return environments_; }
+  const std::vector<std::string>& task_names() const override;
+  const std::vector<std::string>& action_names() const override;
+  int moves() const override { return kPick; }
+
+  WorldState reset(int env, Random& random) const override;
+  WorldStep step(EnvTask pair, WorldState& state, int action) const override;
+  int expert(EnvTask pair, const WorldState& state) const override;
+  void action_values(EnvTask pair, const WorldState& state, int* cents) const override;
+  bool at_choice(EnvTask pair, const WorldState& state) const override;
+
+  Sight sight() const override { return Sight::kPictures; }
+  size_t observation_size() const override;
+  void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
+
+  StartPlaces start_places(int env, const WorldState& start) const override;
+  WorldState start_state(int env, const StartPlaces& places) const override;
+  bool valid(EnvTask pair, const WorldState& state) const override;
+
+ private:
+  const Task& task(EnvTask pair) const { return tasks()[pair.task]; }
+  std::vector<Maze> mazes_;
+  std::vector<Planner> planners_;
+  std::vector<Environment> environments_;
+};
+
+// The world as what it is. Throws kUsage, naming `what` for it is needed, for another.
+const GridSet& as_gridworld(const World& world, const std::string& what);
+
+}  // namespace synpo

@@ -1,0 +1,125 @@
+#include "world/grid/maze.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "base/files/io.h"
+#include "world/grid/builtin_maps.h"
+
+namespace synpo {
+namespace {
+
+bool connected(const Maze& maze) {
+  std::vector<bool> reached(kGridCells, false);
+  std::vector<int> stack = {maze.free_cells.front()};
+  reached[stack.front()] = true;
+  size_t count = 0;
+  while (!stack.empty()) {
+    const int cell = stack.back();
+    stack.pop_back();
+    ++count;
+    for (const int next : {cell - kGridSide, cell + kGridSide, cell - 1, cell + 1})
+      if (!maze.wall[next] && !reached[next]) {
+        reached[next] = true;
+        stack.push_back(next);
+      }
+  }
+  return count == maze.free_cells.size();
+}
+
+std::vector<std::string> split_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find('\n', begin), text.size());
+    lines.push_back(text.substr(begin, end - begin));
+    if (!lines.back().empty() && lines.back().back() == '\r') lines.back().pop_back();
+    begin = end + 1;
+  }
+  while (!lines.empty() && lines.back().find_first_not_of(' ') == std::string::npos) lines.pop_back();
+  return lines;
+}
+
+}  // namespace
+
+std::string Maze::canonical_text() const {
+  std::string text;
+  for (int cell = 0; cell < kGridCells; ++cell) {
+    text += wall[cell] ? '#' : '@';
+    if (cell % kGridSide == kGridSide - 1) text += '\n';
+  }
+  return text;
+}
+
+Maze parse_maze(const std::string& name, const std::string& text, const std::string& where) {
+  const std::vector<std::string> lines = split_lines(text);
+  if (lines.size() != kGridSide)
+    fail(Exit::kData, where, ": found ", lines.size(), " lines, expected a maze of ", kGridSide, " lines of ", kGridSide, " characters");
+  Maze maze;
+  maze.name = name;
+  for (int row = 0; row < kGridSide; ++row) {
+    std::string line = lines[row];
+    line.erase(std::min(line.size(), std::max<size_t>(kGridSide, line.find_last_not_of(' ') + 1)));
+    if (line.size() > kGridSide)
+      fail(Exit::kData, where, ": line ", row + 1, ": found ", line.size(), " characters, expected ", kGridSide);
+    for (int column = 0; column < kGridSide; ++column) {
+      // Editors drop blanks at the end of a line: what is missing is floor, and the outer wall where it would stand in it.
+      const bool border = row == 0 || row == kGridSide - 1 || column == 0 || column == kGridSide - 1;
+      const char c = column < int(line.size()) ? line[column] : border ? '#' : ' ';
+      const auto place = [&] { return concat(where, ": line ", row + 1, ", column ", column + 1, ": "); };
+      if (c != '#' && c != ' ' && c != '@')
+        fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected '#' (wall), ' ' or '@' (floor)");
+      if (border && c != '#') fail(Exit::kData, place(), "found floor, expected the outer wall");
+      maze.wall[row * kGridSide + column] = c == '#';
+      if (c != '#') maze.free_cells.push_back(uint8_t(row * kGridSide + column));
+    }
+  }
+  if (maze.free_cells.size() < 6) fail(Exit::kData, where, ": found ", maze.free_cells.size(), " floor cells, expected at least 6");
+  if (!connected(maze)) fail(Exit::kData, where, ": some floor cells cannot be reached from the others");
+  maze.hash = Hash().add(maze.canonical_text()).value();
+  return maze;
+}
+
+const std::vector<Maze>& builtin_mazes() {
+  static const std::vector<Maze> mazes = [] {
+    std::vector<Maze> all;
+    for (const BuiltinMap& map : kBuiltinMaps) all.push_back(parse_maze(map.name, map.text, map.name));
+    std::sort(all.begin(), all.end(), [](const Maze& a, const Maze& b) { return natural_less(a.name, b.name); });
+    return all;
+  }();
+  return mazes;
+}
+
+std::vector<Maze> open_mazes(const std::string& world) {
+  static const std::string name = "gridworld", prefix = name + ":";
+  if (world == name) return builtin_mazes();
+  if (world.starts_with(prefix)) return load_mazes(world.substr(prefix.size()));
+  fail(Exit::kUsage, "unknown world ", quoted(world), ", expected gridworld or gridworld:DIR");
+}
+
+std::vector<Maze> load_mazes(const std::string& folder) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::vector<std::string> names;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (name.starts_with("map") && name.ends_with(".txt")) names.push_back(name);
+  }
+  if (error) fail(Exit::kNoInput, "cannot read the folder '", folder, "': ", error.message());
+  if (names.empty()) fail(Exit::kNoInput, "no map*.txt in the folder '", folder, "'");
+  std::sort(names.begin(), names.end(), natural_less);
+  std::vector<Maze> mazes;
+  for (const std::string& name : names) {
+    const std::string path = (fs::path(folder) / name).string();
+    Input input(path);
+    mazes.push_back(parse_maze(name.substr(0, name.size() - 4), input.rest(1 << 16), path));
+  }
+  return mazes;
+}
+
+}  // namespace synpo

@@ -1,0 +1,44 @@
+// Kitchens from plans: the objects lie on any slots, and what the agent sees is drawn and made into features on the way.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "world/kitchen/view/features.h"
+#include "world/kitchen/geometry/make_tables.h"
+#include "world/kitchen/kitchen_world.h"
+
+namespace synpo {
+
+class KitchenSet : public KitchenWorld {
+ public:
+  // Throws kData for two kitchens of one name, or one in which a task cannot be done.
+  explicit KitchenSet(const std::vector<Kitchen>& kitchens);
+  // The nineteen that are built in.
+  KitchenSet();
+
+  WorldState reset(int env, Random& random) const override;
+  std::string extractor() const override;
+
+  const KitchenScene& scene(int env) const { return plans_[size_t(env)]->scene; }
+  const KitchenTables& tables(int env) const { return plans_[size_t(env)]->room.tables; }
+  const KitchenPlanner& planner(int env) const { return plans_[size_t(env)]->room.planner; }
+  // What of a state can be seen.
+  KitchenFrame frame(int env, const WorldState& state) const;
+
+ protected:
+  int layouts(int) const override { return 1; }
+  const Room& room(int env, int) const override { return plans_[size_t(env)]->room; }
+  void write_view(int env, const KitchenState& state, float* features) const override;
+  void place_objects(int env, const Places& places, KitchenState& state) const override;
+
+ private:
+  struct Plan {
+    explicit Plan(const Kitchen& kitchen) : scene(kitchen), room(kitchen.name, kitchen_tables(kitchen, scene)) {}
+    KitchenScene scene;
+    Room room;
+  };
+  std::vector<std::unique_ptr<const Plan>> plans_;
+};
+
+}  // namespace synpo

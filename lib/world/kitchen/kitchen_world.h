@@ -1,0 +1,65 @@
+// Kitchens as a world: 21 tasks, the rules over tables, their expert, and the layout of observations and starts. Where tables and features come from,
+// KitchenSet (plans) and SceneKitchens (files) say.
+#pragma once
+#include <array>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "world/kitchen/planner.h"
+#include "world/world.h"
+
+namespace synpo {
+
+class KitchenWorld : public World {
+ public:
+  const std::string& name() const override;
+  int rules() const override { return kKitchenRules; }
+  const std::vector<Environment>& environments() const override { return environments_; }
+  const std::vector<std::string>& task_names() const override;
+  const std::vector<std::string>& action_names() const override;
+  int moves() const override { return kKitchenMoves; }
+
+  WorldStep step(EnvTask pair, WorldState& state, int action) const override;
+  int expert(EnvTask pair, const WorldState& state) const override;
+  void action_values(EnvTask pair, const WorldState& state, int* cents) const override;
+  bool at_choice(EnvTask pair, const WorldState& state) const override;
+
+  Sight sight() const override { return Sight::kFeatures; }
+  size_t observation_size() const override;
+  // float [kHistory, kViewFeatures] of the views, oldest first and zero where there is none, then kHandFloats, of which the first is the number of the
+  // object in the hand now, kEmptyHand for none; the rest is zero. `window` means nothing here.
+  void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
+
+  // "agent": row, column; "view": heading, horizon in degrees; and each object's name: row, column.
+  StartPlaces start_places(int env, const WorldState& start) const override;
+  WorldState start_state(int env, const StartPlaces& places) const override;
+  bool valid(EnvTask pair, const WorldState& state) const override;
+
+ protected:
+  // In one place in memory, as the planner holds on to the tables.
+  struct Room {
+    Room(const std::string& name, KitchenTables all) : tables(std::move(all)), planner(name, tables) {}
+    Room(const Room&) = delete;
+    KitchenTables tables;
+    KitchenPlanner planner;
+  };
+
+  virtual int layouts(int env) const = 0;
+  virtual const Room& room(int env, int layout) const = 0;
+  // Writes the features [kViewFeatures] of what is seen of a state.
+  virtual void write_view(int env, const KitchenState& state, float* features) const = 0;
+  // Layout and slots of the objects of a start, which lie at these rows and columns. Throws kData where no episode starts so.
+  using Places = std::array<std::pair<int, int>, kKitchenObjects>;
+  virtual void place_objects(int env, const Places& places, KitchenState& state) const = 0;
+
+  // Throws kData for a name that is there already.
+  void add_environment(const Environment& environment);
+
+ private:
+  const Room& room_of(int env, const KitchenState& state) const { return room(env, state.layout); }
+
+  std::vector<Environment> environments_;
+};
+
+}  // namespace synpo

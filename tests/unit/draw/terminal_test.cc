@@ -1,0 +1,121 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "draw/terminal/terminal.h"
+
+namespace synpo {
+namespace {
+
+HeatTable table() {
+  Matrix m;
+  const auto add = [&](const char* env, const char* task, bool seen, int64_t k, int64_t n) {
+    MatrixRow row;
+    row.env = env;
+    row.task = task;
+    row.seen = seen;
+    row.successes = k;
+    row.episodes = n;
+    m.rows.push_back(row);
+  };
+  add("map1", "push", true, 100, 100);
+  add("map2", "push", false, 999, 1000);
+  add("map10", "lift", true, 1, 1000);
+  return pool_matrix(m);
+}
+
+TEST(Terminal, WithoutColour) {
+  EXPECT_EQ(terminal_matrix(table(), find_scheme("safe"), TerminalColour::kNone, 10),
+            "100 to 1000 episodes a pair\n"
+            " map   1   2  10\n"
+            "push 100  99*\n"
+            "lift           1\n"
+            "\n"
+            "seen: 9.2 % of 1100 episodes, 2 pairs\n"
+            "unseen (*): 99.9 % of 1000 episodes, 1 pair\n");
+}
+
+TEST(Terminal, GroupsWithoutPairsAreNotNamed) {
+  HeatTable with_empty = table();
+  with_empty.groups.push_back({"rest"});
+  for (const TerminalColour colour : {TerminalColour::kNone, TerminalColour::kTrue})
+    EXPECT_EQ(terminal_matrix(with_empty, find_scheme("safe"), colour, 10), terminal_matrix(table(), find_scheme("safe"), colour, 10));
+}
+
+TEST(Terminal, BlocksShrinkToTheWidth) {
+  const auto second_line = [](int width) {
+    const std::string text = terminal_matrix(table(), find_scheme("safe"), TerminalColour::kTrue, width);
+    const size_t at = text.find("\npush ") + 1;
+    std::string line = text.substr(at, text.find('\n', at) - at), plain;
+    for (size_t i = 0; i < line.size(); ++i) {
+      if (line[i] == '\033') i = line.find('m', i);
+      else plain += line[i];
+    }
+    return plain;
+  };
+  EXPECT_EQ(second_line(0), "push  100  99    ");
+  EXPECT_EQ(second_line(17), "push  100  99    ");
+  EXPECT_EQ(second_line(16), "push 100 99   ");
+  EXPECT_EQ(second_line(13), "push       ");
+  EXPECT_EQ(second_line(4), "push    ");
+}
+
+// Names of mazes that stand in the first line.
+size_t mazes_in_a_row(int64_t columns, int width) {
+  MapStyle style;
+  style.columns = columns;
+  const std::string text = terminal_maps(builtin_mazes(), style, TerminalColour::kNone, width), line = text.substr(0, text.find('\n'));
+  size_t names = 0;
+  for (size_t at = line.find("map"); at != std::string::npos; at = line.find("map", at + 1)) ++names;
+  return names;
+}
+
+TEST(Terminal, Mazes) {
+  const Maze& maze = builtin_mazes()[0];
+  MapStyle style;
+  style.title = "One";
+  const std::string plain = terminal_maps({maze}, style, TerminalColour::kNone, 80);
+  ASSERT_TRUE(plain.starts_with("One\n\nmap1\n" + std::string(32, '#') + '\n'));
+  const size_t first = plain.find('#');
+  for (int cell = 0; cell < kGridCells; ++cell)
+    EXPECT_EQ(plain[first + cell / kGridSide * (2 * kGridSide + 1) + cell % kGridSide * 2], maze.wall[cell] ? '#' : ' ') << cell;
+  const std::string coloured = terminal_maps({maze}, {}, TerminalColour::kTrue, 80);
+  EXPECT_TRUE(coloured.starts_with("map1\n\033[38;5;231;48;2;62;70;82m" + std::string(32, ' ') + "\033[0m\n"));
+  EXPECT_EQ(coloured.find('#'), std::string::npos);
+}
+
+TEST(Terminal, MazesInARow) {
+  EXPECT_EQ(mazes_in_a_row(0, 0), 2u);
+  EXPECT_EQ(mazes_in_a_row(0, 66), 2u);
+  EXPECT_EQ(mazes_in_a_row(0, 65), 1u);
+  EXPECT_EQ(mazes_in_a_row(0, 10), 1u);
+  EXPECT_EQ(mazes_in_a_row(0, 10000), 20u);
+  EXPECT_EQ(mazes_in_a_row(3, 10000), 3u);
+}
+
+TEST(Terminal, ColourCodes) {
+  EXPECT_EQ(ground_code({255, 255, 255}, TerminalColour::kTrue), "\033[38;5;16;48;2;255;255;255m");
+  EXPECT_EQ(ground_code({0, 0, 100}, TerminalColour::k256), "\033[38;5;231;48;5;17m");
+  EXPECT_EQ(ground_code({255, 0, 0}, TerminalColour::k256), "\033[38;5;16;48;5;196m");
+  EXPECT_EQ(ground_code({0, 0, 0}, TerminalColour::kNone), "");
+}
+
+TEST(Terminal, TheEnvironmentDecides) {
+  const auto colour = [](const char* term, const char* depth, const char* none) {
+    setenv("TERM", term, 1);
+    setenv("COLORTERM", depth, 1);
+    setenv("NO_COLOR", none, 1);
+    return environment_colour();
+  };
+  EXPECT_EQ(colour("xterm-256color", "", ""), TerminalColour::k256);
+  EXPECT_EQ(colour("xterm", "truecolor", ""), TerminalColour::kTrue);
+  EXPECT_EQ(colour("xterm", "truecolor", "1"), TerminalColour::kNone);
+  EXPECT_EQ(colour("dumb", "truecolor", ""), TerminalColour::kNone);
+  EXPECT_EQ(colour("", "", ""), TerminalColour::kNone);
+  for (const char* name : {"TERM", "COLORTERM", "NO_COLOR"}) unsetenv(name);
+  EXPECT_EQ(terminal_colour(-1), TerminalColour::kNone);
+  EXPECT_EQ(terminal_width(-1), 0);
+}
+
+}  // namespace
+}  // namespace synpo

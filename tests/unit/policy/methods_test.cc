@@ -1,0 +1,386 @@
+// What every method has to keep: gradients, threads, batches behind one another, inference; and what only one of them does.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "helpers/policy_fixture.h"
+
+namespace synpo {
+namespace {
+
+struct Variant {
+  std::string name, method;
+  bool normalise = false;
+  int action_embedding = 0;
+  SfLoss sf_loss = SfLoss::kTemporalDifference;
+  Sight sight = Sight::kPictures;
+
+  PolicyShape shape(bool full = false) const {
+    PolicyShape shape = sight == Sight::kFeatures ? tiny_feature_shape() : tiny_shape(normalise);
+    if (full && sight == Sight::kFeatures) {
+      shape.views = {200, 136, 8, 32, 72};
+    } else if (full) {
+      shape = PolicyShape();
+      if (method != "synpo" || action_embedding > 0) shape.channels = tiny_shape(false).channels;
+      shape.normalise_input = shape.normalise_embeddings = normalise;
+    }
+    shape.action_embedding = full && action_embedding > 0 ? 32 : action_embedding;
+    shape.sf_loss = sf_loss;
+    return shape;
+  }
+  bool temporal_difference() const { return method == "sf" && sf_loss == SfLoss::kTemporalDifference; }
+};
+
+std::ostream& operator<<(std::ostream& to, const Variant& variant) { return to << variant.name; }
+
+const Variant kVariants[] = {{"SynPo", "synpo"},
+                             {"SynPoOfFeatures", "synpo", false, 0, SfLoss::kTemporalDifference, Sight::kFeatures},
+                             {"SynPoNormalised", "synpo", true},
+                             {"SynPoGeneral", "synpo", false, 3},
+                             {"SynPoGeneralNormalised", "synpo", true, 7},
+                             {"Mtl", "mtl"},
+                             {"MtlGeneralNormalised", "mtl", true, 3},
+                             {"Mlp", "mlp"},
+                             {"MlpNormalised", "mlp", true},
+                             {"ModuleNet", "modulenet"},
+                             {"SfTemporalDifference", "sf"},
+                             {"SfTemporalDifferenceNormalised", "sf", true},
+                             {"SfPlannerQ", "sf", false, 0, SfLoss::kPlannerQ},
+                             {"SfCrossEntropy", "sf", false, 0, SfLoss::kCrossEntropy}};
+
+class Methods : public testing::TestWithParam<Variant> {
+ protected:
+  template <class T>
+  Network<T> network(bool full = false) const {
+    Network<T> net(GetParam().shape(full), GetParam().method);
+    net.initialise();
+    return net;
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const auto& info) { return info.param.name; });
+
+constexpr double kDropout = 0.3;
+
+// SF's temporal difference holds its targets fixed, so that its gradient is none of its loss; but where they are constant it is: with phi
+// constant, and nothing behind. phi's own gradient has a test below.
+TEST_P(Methods, GradientsAreFiniteDifferences) {
+  Network<double> net = network<double>();
+  net.shake();
+  const PolicyShape shape = GetParam().shape();
+  const RandomSteps<double> steps(14, shape, 5);
+  const bool fixed = GetParam().temporal_difference();
+  if (fixed) std::fill_n(net.parameter("phi.out.weight"), shape.head_hidden * shape.actions * shape.embedding, 0.0);
+  for (const double dropout : {0.0, kDropout}) {
+    if (dropout > 0 && GetParam().method != "modulenet") continue;
+    expect_finite_differences(
+        net, steps.batch(), {0.3, 0.5, 0.7, dropout, /*discount=*/0}, [](const Losses& losses) { return losses.total; },
+        [&](const std::string& name) { return !fixed || !name.starts_with("phi."); });
+  }
+}
+
+TEST_P(Methods, EveryLossCountsByItsWeight) {
+  Network<double> net = network<double>();
+  const RandomSteps<double> steps(9, GetParam().shape(), 4);
+  Parallel parallel(1);
+  const std::vector<double> statistics = net.statistics;
+  Losses losses;
+  const auto gradient = [&](const LossWeights& weights) {
+    net.statistics = statistics;
+    losses = net.step(parallel, steps.batch(), weights);
+    double total = losses.policy;
+    for (const double part : {weights.reward * losses.reward, weights.env * losses.env, weights.task * losses.task})
+      if (!std::isnan(part)) total += part;
+    EXPECT_NEAR(losses.total, total, 1e-13);
+    return net.gradient;
+  };
+  const std::vector<double> none = gradient({0, 0, 0});
+  std::vector<double> sum = none;
+  const Losses at_none = losses;
+  for (const auto& [weights, loss] : {std::pair{LossWeights{2, 0, 0}, at_none.reward},
+                                      {LossWeights{0, 3, 0}, at_none.env},
+                                      {LossWeights{0, 0, 4}, at_none.task}}) {
+    const std::vector<double> one = gradient(weights);
+    if (std::isnan(loss))
+      EXPECT_EQ(one, none);
+    else
+      EXPECT_GT(relative_error(one, none), 1e-3);
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += one[i] - none[i];
+  }
+  EXPECT_LT(relative_error(gradient({2, 3, 4}), sum), 1e-12);
+}
+
+TEST_P(Methods, OneAndTwoThreadsGiveTheSameBits) {
+  for (const bool full : {false, true}) {
+    const RandomSteps<float> steps(full ? 45 : 141, GetParam().shape(full), 4);
+    Network<float> one = network<float>(full), two = network<float>(full);
+    Parallel alone(1), together(2);
+    one.step(alone, steps.batch(), {0.01, 0.1, 1, kDropout});
+    two.step(together, steps.batch(), {0.01, 0.1, 1, kDropout});
+    EXPECT_EQ(one.gradient, two.gradient);
+    EXPECT_EQ(one.logits, two.logits);
+    EXPECT_EQ(one.statistics, two.statistics);
+  }
+}
+
+TEST_P(Methods, ABatchBehindAnotherIsAsIfItWereAlone) {
+  // Memory that an earlier, larger step left behind must not show.
+  const RandomSteps<float> large(70, GetParam().shape(), 4), small(9, GetParam().shape(), 5);
+  Parallel parallel(2);
+  Network<float> fresh = network<float>(), used = network<float>();
+  const std::vector<float> statistics = used.statistics;
+  used.step(parallel, large.batch(), {0.01, 0.1, 1, kDropout});
+  used.statistics = statistics;
+  used.infer(parallel, large.batch(), 32);
+  const Losses behind = used.step(parallel, small.batch(), {0.01, 0.1, 1, kDropout});
+  const Losses alone = fresh.step(parallel, small.batch(), {0.01, 0.1, 1, kDropout});
+  EXPECT_EQ(behind.total, alone.total);
+  EXPECT_EQ(used.logits, fresh.logits);
+  EXPECT_EQ(used.gradient, fresh.gradient);
+  EXPECT_EQ(used.statistics, fresh.statistics);
+  EXPECT_EQ(used.infer(parallel, small.batch(), 32), fresh.infer(parallel, small.batch(), 32));
+}
+
+TEST_P(Methods, InferenceDoesNotDependOnNeighboursOrThreads) {
+  for (const bool full : {false, true}) {
+    const RandomSteps<float> steps(39, GetParam().shape(full), 6);
+    Network<float> net = network<float>(full);
+    Parallel one(1), two(2);
+    net.step(one, steps.batch(), {0.01, 0.1, 1});
+    const std::vector<float> together = net.infer(one, steps.batch(), 32);
+    EXPECT_EQ(net.infer(two, steps.batch(), 32), together);
+    for (const int at_once : {1, 3, 17}) EXPECT_EQ(net.infer(two, steps.batch(), at_once), together) << at_once << " at once";
+  }
+}
+
+TEST_P(Methods, InferenceWithTheBatchsOwnStatisticsIsTraining) {
+  // Statistics that equal the batch's make frozen and training normalisation the same, but for the unbiased variance.
+  const RandomSteps<double> steps(60, GetParam().shape(), 6);
+  Network<double> net = network<double>();
+  net.shake();
+  Parallel parallel(1);
+  for (int i = 0; i < 100; ++i) net.step(parallel, steps.batch(), {0.01, 0.1, 1});
+  EXPECT_LT(relative_error(net.infer(parallel, steps.batch(), 32), net.logits), 0.03);
+}
+
+TEST_P(Methods, StartsAsToldByTheSeed) {
+  Network<float> a = network<float>(), b = network<float>(), other = network<float>();
+  other.initialise({4, 1});
+  EXPECT_EQ(a.parameters, b.parameters);
+  std::set<float> firsts;
+  for (const TensorInfo& tensor : a.policy->parameters().tensors()) {
+    const float first = a.parameters[tensor.offset];
+    const bool drawn = tensor.name.starts_with("encoder.conv");  // the temporal network's, biases too
+    const bool zero = !drawn && (tensor.name.ends_with("bias") || tensor.name.ends_with("shift"));
+    EXPECT_EQ(first == 0, zero) << tensor.name;
+    if (zero || tensor.name.ends_with("scale")) continue;
+    EXPECT_NE(first, other.parameters[tensor.offset]) << tensor.name;
+    EXPECT_TRUE(firsts.insert(first).second) << tensor.name << " repeats another";
+  }
+}
+
+// With the identity for phi the general form is the direct one.
+class OneHot : public testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Methods, OneHot, testing::Values("synpo", "mtl"), [](const auto& info) { return info.param; });
+
+TEST_P(OneHot, GeneralFormIsTheDirectForm) {
+  PolicyShape shape = tiny_shape(true);
+  Network<double> direct(shape, GetParam());
+  shape.action_embedding = shape.actions;
+  Network<double> general(shape, GetParam());
+  direct.initialise();
+  direct.shake();
+  general.statistics = direct.statistics;
+  for (const TensorInfo& tensor : direct.policy->parameters().tensors())
+    std::copy_n(direct.parameter(tensor.name), tensor.size, general.parameter(tensor.name));
+  for (int a = 0; a < shape.actions; ++a) general.parameter("phi")[a * shape.actions + a] = 1;
+  const RandomSteps<double> steps(70, shape, 4);
+  Parallel parallel(2);
+  const Losses want = direct.step(parallel, steps.batch(), {0.3, 0.5, 0.7}), got = general.step(parallel, steps.batch(), {0.3, 0.5, 0.7});
+  EXPECT_NEAR(got.total, want.total, 1e-12);
+  EXPECT_NEAR(got.reward, want.reward, 1e-12);
+  EXPECT_NEAR(got.task, want.task, 1e-12);
+  EXPECT_LT(relative_error(general.logits, direct.logits), 1e-12);
+  for (const TensorInfo& tensor : direct.policy->parameters().tensors())
+    EXPECT_LT(relative_error(general.gradient_of(tensor.name), direct.gradient_of(tensor.name), tensor.size), 1e-11) << tensor.name;
+  EXPECT_LT(relative_error(general.infer(parallel, steps.batch(), 32), direct.infer(parallel, steps.batch(), 32)), 1e-12);
+}
+
+// ModuleNet with modules that let the seam through: a score is what the mask leaves of 1.
+struct OpenSeam {
+  OpenSeam() {
+    net.initialise();
+    for (int task = 0; task < shape.tasks; ++task) {
+      const std::string out = "module.task" + std::to_string(task) + ".out.";
+      std::fill_n(net.parameter(out + "weight"), shape.head_hidden * shape.seam, 0.0);
+      std::fill_n(net.parameter(out + "bias"), shape.seam, 1.0);
+    }
+    for (int env = 0; env < shape.envs; ++env) {
+      const std::string module = "module.env" + std::to_string(env);
+      double *hidden = net.parameter(module + ".hidden.weight"), *out = net.parameter(module + ".out.weight");
+      std::fill_n(hidden, shape.seam * shape.head_hidden, 0.0);
+      std::fill_n(out, shape.head_hidden * shape.actions, 0.0);
+      for (int i = 0; i < shape.seam; ++i) hidden[i * shape.head_hidden + i] = out[i * shape.actions + i] = 1;
+    }
+  }
+  std::vector<double> mask(double dropout, uint64_t seed, uint64_t update) {
+    Parallel parallel(2);
+    StepBatch<double> batch = steps.batch(update);
+    batch.seed = seed;
+    net.step(parallel, batch, {0, 0, 0, dropout});
+    return net.logits;
+  }
+  const PolicyShape shape = tiny_shape(false);
+  const RandomSteps<double> steps{400, shape, 4};
+  Network<double> net{shape, "modulenet"};
+};
+
+TEST(ModuleNet, DropsOutByChanceAndScalesWhatIsLeft) {
+  OpenSeam open;
+  for (const double dropout : {0.2, 0.7}) {
+    int kept = 0;
+    const std::vector<double> mask = open.mask(dropout, 1, 5);
+    for (const double value : mask) {
+      EXPECT_TRUE(value == 0 || std::abs(value - 1 / (1 - dropout)) < 1e-12) << value;
+      kept += value != 0;
+    }
+    const double expected = (1 - dropout) * double(mask.size());
+    EXPECT_NEAR(kept, expected, 5 * std::sqrt(expected * dropout));
+  }
+  EXPECT_EQ(open.mask(0, 1, 5), std::vector<double>(400 * 5, 1.0));
+}
+
+TEST(ModuleNet, TheMaskIsNamedBySeedAndUpdate) {
+  OpenSeam open;
+  const std::vector<double> mask = open.mask(0.5, 1, 5);
+  EXPECT_EQ(open.mask(0.5, 1, 5), mask);
+  EXPECT_NE(open.mask(0.5, 1, 6), mask);
+  EXPECT_NE(open.mask(0.5, 2, 5), mask);
+}
+
+TEST(ModuleNet, InferenceDropsNothingOut) {
+  OpenSeam open;
+  open.mask(0.5, 1, 5);
+  Parallel parallel(2);
+  EXPECT_EQ(open.net.infer(parallel, open.steps.batch(), 32), std::vector<double>(400 * 5, 1.0));
+}
+
+TEST(ModuleNet, ModulesThatABatchLacksGetNoGradient) {
+  const PolicyShape shape = tiny_shape(false);
+  Network<double> net(shape, "modulenet");
+  net.initialise();
+  RandomSteps<double> steps(20, shape, 4);
+  std::fill(steps.env.begin(), steps.env.end(), 1);
+  std::fill(steps.task.begin(), steps.task.end(), 2);
+  Parallel parallel(1);
+  net.step(parallel, steps.batch(), {});
+  for (const TensorInfo& tensor : net.policy->parameters().tensors()) {
+    if (!tensor.name.starts_with("module")) continue;
+    const double* gradient = net.gradient_of(tensor.name);
+    const bool used = tensor.name.starts_with("module.env1.") || tensor.name.starts_with("module.task2.");
+    EXPECT_EQ(std::any_of(gradient, gradient + tensor.size, [](double g) { return g != 0; }), used) << tensor.name;
+  }
+}
+
+struct TemporalDifference {
+  TemporalDifference() {
+    net.initialise();
+    net.shake();
+  }
+  std::vector<double> gradient(const LossWeights& weights) {
+    const std::vector<double> statistics = net.statistics;
+    Parallel parallel(1);
+    losses = net.step(parallel, steps.batch(), weights);
+    net.statistics = statistics;
+    return net.gradient;
+  }
+  const PolicyShape shape = tiny_shape(false);
+  RandomSteps<double> steps{14, shape, 4};
+  Network<double> net{shape, "sf"};
+  Losses losses;
+};
+
+LossWeights discounted(double discount, double reward = 0.3) { return {reward, 0, 0, 0, discount}; }
+
+TEST(SfTemporalDifference, IsTheLossByHand) {
+  TemporalDifference sf;
+  const PolicyShape& shape = sf.shape;
+  const size_t width = shape.embedding;
+  for (const char* weight : {"phi.out.weight", "psi.out.weight"})
+    std::fill_n(sf.net.parameter(weight), shape.head_hidden * shape.actions * width, 0.0);
+  const double *phi = sf.net.parameter("phi.out.bias"), *psi = sf.net.parameter("psi.out.bias"), *task = sf.net.parameter("embedding.task");
+  const auto value = [&](int action, const double* features, int of_task) {
+    return std::inner_product(features + action * width, features + (action + 1) * width, task + of_task * width, 0.0);
+  };
+  const RandomSteps<double>& steps = sf.steps;
+  double sum = 0, reward = 0;
+  int counted = 0;
+  std::set<int> kinds;
+  for (int i = 0; i < 14; ++i) {
+    kinds.insert(std::min(steps.next[i], 0));
+    reward += std::pow(value(steps.taken[i], phi, steps.task[i]) - steps.reward[i], 2) / 14;
+    if (steps.next[i] == StepBatch<double>::kUnknown) continue;
+    ++counted;
+    for (size_t c = 0; c < width; ++c) {
+      const double behind = steps.next[i] == StepBatch<double>::kTerminal ? 0 : psi[steps.label[steps.next[i]] * width + c];
+      sum += std::pow(psi[steps.taken[i] * width + c] - phi[steps.taken[i] * width + c] - 0.9 * behind, 2);
+    }
+  }
+  ASSERT_EQ(kinds.size(), 3u);
+  sf.gradient(discounted(0.9));
+  EXPECT_NEAR(sf.losses.policy, sum / double(counted * width), 1e-12);
+  EXPECT_NEAR(sf.losses.reward, reward, 1e-12);
+  EXPECT_TRUE(std::isnan(sf.losses.env) && std::isnan(sf.losses.task));
+  for (int i = 0; i < 14; ++i)
+    for (int a = 0; a < shape.actions; ++a) EXPECT_NEAR(sf.net.logits[i * 5 + a], value(a, psi, steps.task[i]), 1e-12);
+}
+
+TEST(SfTemporalDifference, PhiLearnsFromTheRewardAlone) {
+  TemporalDifference sf;
+  expect_finite_differences(sf.net, sf.steps.batch(), discounted(0.9, 0.3), [](const Losses& losses) { return 0.3 * losses.reward; },
+                            [](const std::string& name) { return name.starts_with("phi."); });
+}
+
+TEST(SfTemporalDifference, TargetsAreHeldFixed) {
+  // The loss is quadratic in the discount, and so is its own gradient; with targets held fixed it is linear.
+  TemporalDifference sf;
+  const std::vector<double> none = sf.gradient(discounted(0)), half = sf.gradient(discounted(0.5)), whole = sf.gradient(discounted(1));
+  std::vector<double> between(none.size());
+  for (size_t i = 0; i < none.size(); ++i) between[i] = (none[i] + whole[i]) / 2;
+  EXPECT_LT(relative_error(half, between), 1e-12);
+  EXPECT_GT(relative_error(none, whole), 1e-3);
+}
+
+TEST(SfTemporalDifference, ABatchOfUnknownStepsTeachesTheRewardAlone) {
+  TemporalDifference sf;
+  std::fill(sf.steps.next.begin(), sf.steps.next.end(), StepBatch<double>::kUnknown);
+  sf.gradient(discounted(0.9));
+  EXPECT_EQ(sf.losses.policy, 0);
+  EXPECT_EQ(sf.net.gradient_of("psi.out.bias")[0], 0);
+  EXPECT_NE(sf.net.gradient_of("phi.out.bias")[0] + sf.net.gradient_of("phi.out.bias")[5], 0);
+}
+
+TEST(Sf, AsksForWhatItsLossNeeds) {
+  PolicyShape shape = tiny_shape(false);
+  const auto needs = [&](SfLoss loss) {
+    shape.sf_loss = loss;
+    return make_policy("sf", shape)->needs();
+  };
+  EXPECT_TRUE(needs(SfLoss::kTemporalDifference).next && !needs(SfLoss::kTemporalDifference).planner_q);
+  EXPECT_TRUE(!needs(SfLoss::kPlannerQ).next && needs(SfLoss::kPlannerQ).planner_q);
+  EXPECT_TRUE(!needs(SfLoss::kCrossEntropy).next && !needs(SfLoss::kCrossEntropy).planner_q);
+}
+
+TEST(EveryMethod, ActsAtATemperature) {
+  PolicyShape shape = tiny_shape(false);
+  for (const char* method : {"synpo", "mlp", "mtl", "modulenet"}) EXPECT_EQ(make_policy(method, shape)->temperature(), kTemperature);
+  for (const SfLoss loss : {SfLoss::kTemporalDifference, SfLoss::kPlannerQ, SfLoss::kCrossEntropy}) {
+    shape.sf_loss = loss;
+    EXPECT_EQ(make_policy("sf", shape)->temperature(), loss == SfLoss::kCrossEntropy ? kTemperature : 0);
+  }
+}
+
+}  // namespace
+}  // namespace synpo

@@ -1,0 +1,137 @@
+#include "world/grid/maze.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "helpers/mazes.h"
+#include "helpers/table_helpers.h"
+#include "helpers/temporary.h"
+#include "world/grid/grid_set.h"
+
+namespace synpo {
+namespace {
+
+TEST(BuiltinMazes, AreTwentyDifferentOnes) {
+  const std::vector<Maze>& mazes = builtin_mazes();
+  ASSERT_EQ(mazes.size(), 20u);
+  std::set<uint64_t> hashes;
+  std::set<std::string> texts;
+  int plain = 0;
+  for (size_t i = 0; i < mazes.size(); ++i) {
+    EXPECT_EQ(mazes[i].name, "map" + std::to_string(i + 1));
+    hashes.insert(mazes[i].hash);
+    texts.insert(mazes[i].canonical_text());
+    plain += mazes[i].free_cells.size() == 152;
+    EXPECT_EQ(mazes[i].free_cells.size(), size_t(std::count(mazes[i].wall.begin(), mazes[i].wall.end(), false)));
+  }
+  EXPECT_EQ(hashes.size(), 20u);
+  EXPECT_EQ(texts.size(), 20u);
+  EXPECT_EQ(plain, 19);
+}
+
+TEST(Maze, ReadsText) {
+  const Maze maze = parse_maze("m", room({cell(3, 4)}), "m.txt");
+  EXPECT_TRUE(maze.wall[cell(3, 4)]);
+  EXPECT_TRUE(maze.wall[cell(0, 7)]);
+  EXPECT_FALSE(maze.wall[cell(4, 3)]);
+  EXPECT_EQ(maze.free_cells.size(), 14u * 14 - 1);
+  EXPECT_TRUE(std::is_sorted(maze.free_cells.begin(), maze.free_cells.end()));
+  const std::string canonical = maze.canonical_text();
+  EXPECT_EQ(canonical.size(), 16u * 17);
+  EXPECT_EQ(canonical.substr(3 * 17, 17), "#@@@#@@@@@@@@@@#\n");
+  // '@' is floor too, and ends of lines and of the file may differ.
+  EXPECT_EQ(parse_maze("m", canonical, "m.txt").hash, maze.hash);
+  EXPECT_EQ(parse_maze("m", room({cell(3, 4)}) + "\n   \n", "m.txt").hash, maze.hash);
+  std::string other = room({cell(3, 4)});
+  other.pop_back();
+  EXPECT_EQ(parse_maze("m", other, "m.txt").hash, maze.hash);
+  for (size_t at = 0; (at = other.find('\n', at)) != std::string::npos; at += 2) other.insert(at, "\r");
+  EXPECT_EQ(parse_maze("m", other, "m.txt").hash, maze.hash);
+  EXPECT_NE(parse_maze("m", room(), "m.txt").hash, maze.hash);
+}
+
+TEST(Maze, BlanksAtTheEndOfALineMayBeMissingOrTooMany) {
+  const Maze maze = parse_maze("m", room({cell(5, 9)}), "m.txt");
+  std::string text = room({cell(5, 9)});
+  text.insert(17 * 7 + 16, "    ");
+  text.erase(17 * 5 + 10, 6);  // what is missing is floor, and the wall at its end
+  EXPECT_EQ(parse_maze("m", text, "m.txt").canonical_text(), maze.canonical_text());
+  text = room();
+  text.erase(17 * 5, 16);
+  EXPECT_EQ(parse_maze("m", text, "m.txt").canonical_text(), open_maze().canonical_text());
+}
+
+std::string maze_refused(const std::string& text) {
+  return thrown([&] { parse_maze("m", text, "m.txt"); });
+}
+
+TEST(Maze, RefusesOtherTexts) {
+  const std::string good = room();
+  EXPECT_EQ(maze_refused(""), "65 m.txt: found 0 lines, expected a maze of 16 lines of 16 characters");
+  EXPECT_EQ(maze_refused(good.substr(17)), "65 m.txt: found 15 lines, expected a maze of 16 lines of 16 characters");
+  EXPECT_EQ(maze_refused(good + "################\n"), "65 m.txt: found 17 lines, expected a maze of 16 lines of 16 characters");
+  std::string wide = good;
+  wide.insert(17 + 16, "#");
+  EXPECT_EQ(maze_refused(wide), "65 m.txt: line 2: found 17 characters, expected 16");
+  std::string foreign = good;
+  foreign[2 * 17 + 4] = 'x';
+  EXPECT_EQ(maze_refused(foreign), "65 m.txt: line 3, column 5: found 'x', expected '#' (wall), ' ' or '@' (floor)");
+  foreign[2 * 17 + 4] = '\0';
+  EXPECT_EQ(maze_refused(foreign), "65 m.txt: line 3, column 5: found '\\x00', expected '#' (wall), ' ' or '@' (floor)");
+  for (const size_t at : {5u, 17u * 15 + 5, 17u * 5, 17u * 5 + 15}) {
+    std::string hole = good;
+    hole[at] = ' ';
+    EXPECT_EQ(maze_refused(hole), concat("65 m.txt: line ", at / 17 + 1, ", column ", at % 17 + 1, ": found floor, expected the outer wall"));
+  }
+  EXPECT_EQ(maze_refused(room({cell(1, 2), cell(2, 1)})), "65 m.txt: some floor cells cannot be reached from the others");
+  std::string full;
+  for (int row = 0; row < 16; ++row) full += row == 3 ? "#@@@@@##########\n" : "################\n";
+  EXPECT_EQ(maze_refused(full), "65 m.txt: found 5 floor cells, expected at least 6");
+}
+
+TEST(Maze, FoldersAreReadInNaturalOrder) {
+  const TemporaryFolder folder;
+  for (const char* name : {"map10.txt", "map2.txt", "map1.txt", "notes.txt", "map3.txt~"}) folder.file(name, room());
+  std::string names;
+  for (const Maze& maze : load_mazes(folder.path())) names += maze.name + " ";
+  EXPECT_EQ(names, "map1 map2 map10 ");
+  EXPECT_EQ(GridSet::open("gridworld:" + folder.path()).envs(), 3);
+  folder.file("map4.txt", "#\n");
+  EXPECT_EQ(thrown([&] { load_mazes(folder.path()); }),
+            "65 " + folder.file("map4.txt") + ": found 1 lines, expected a maze of 16 lines of 16 characters");
+}
+
+TEST(Maze, AFolderWithoutMapsIsMissingInput) {
+  const TemporaryFolder folder;
+  folder.file("notes.txt", room());
+  EXPECT_EQ(thrown([&] { load_mazes(folder.path()); }), "66 no map*.txt in the folder '" + folder.path() + "'");
+  EXPECT_EQ(thrown([&] { load_mazes(folder.file("none")); }),
+            "66 cannot read the folder '" + folder.file("none") + "': No such file or directory");
+}
+
+TEST(Maze, NaturalOrder) {
+  const std::vector<std::string> ordered = {"", "1", "2", "10", "a", "map", "map1", "map2", "map2a", "map2a3", "map2a12", "map10", "map11", "map100", "mapa"};
+  for (size_t i = 0; i < ordered.size(); ++i)
+    for (size_t j = 0; j < ordered.size(); ++j) EXPECT_EQ(natural_less(ordered[i], ordered[j]), i < j) << ordered[i] << " " << ordered[j];
+  EXPECT_NE(natural_less("map01", "map1"), natural_less("map1", "map01"));
+}
+
+TEST(GridSet, FindsNames) {
+  const GridSet world = GridSet::open("gridworld");
+  EXPECT_EQ(world.env_index("map20"), 19);
+  EXPECT_EQ(world.env_index("map21"), -1);
+  EXPECT_EQ(world.task_index("P-O"), 19);
+  EXPECT_EQ(world.task_index("O"), -1);
+  std::set<uint64_t> numbers;
+  for (int env = 0; env < world.envs(); ++env)
+    for (int task = 0; task < world.task_count(); ++task) numbers.insert(world.pair_number({env, task}));
+  EXPECT_EQ(numbers.size(), 400u);
+  EXPECT_EQ(thrown([] { GridSet::open("kitchen"); }), "64 unknown world 'kitchen', expected gridworld or gridworld:DIR");
+  EXPECT_EQ(thrown([] { GridSet({open_maze(), open_maze()}); }), "65 two environments are named 'open'");
+}
+
+}  // namespace
+}  // namespace synpo

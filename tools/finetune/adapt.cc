@@ -1,0 +1,104 @@
+// Demonstrations on stdin, an adapted checkpoint on stdout.
+#include <cstdio>
+
+#include "base/error.h"
+#include "base/cli/options.h"
+#include "base/cli/progress.h"
+#include "base/signals.h"
+#include "learn/adapt.h"
+#include "play/world_factory.h"
+#include "play/stream.h"
+#include "finetune/finetune.h"
+
+using namespace synpo;
+
+namespace {
+
+// The checkpoint's environments, and those of `more` that it has not.
+std::unique_ptr<World> wider_world(const World& world, const World* more, const std::string& name) {
+  std::vector<Environment> environments = world.environments();
+  if (more) {
+    if (more->name() != world.name()) fail(Exit::kUsage, "the checkpoint is of ", world.name(), ", -w names ", more->name());
+    for (const Environment& env : more->environments()) {
+      const int known = world.env_index(env.name);
+      if (known < 0)
+        environments.push_back(env);
+      else if (world.environments()[known].hash != env.hash)
+        fail(Exit::kData, "environment ", quoted(env.name), " of ", quoted(name), " is another one in the checkpoint");
+    }
+  }
+  return restore_world(world.name(), environments, more);
+}
+
+AdaptTargets parse_targets(const std::string& list) {
+  AdaptTargets targets;
+  std::string rest = list;
+  if (!rest.starts_with("embeddings")) throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
+  rest.erase(0, 10);
+  while (!rest.empty()) {
+    bool* target = rest.starts_with("+heads") ? &targets.heads : rest.starts_with("+coefficients") ? &targets.coefficients : nullptr;
+    if (!target) throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
+    *target = true;
+    rest.erase(0, target == &targets.heads ? 6 : 13);
+  }
+  return targets;
+}
+
+}  // namespace
+
+int adapt(int argc, char** argv) {
+  AdaptOptions adaptation;
+  std::string checkpoint_path, world_name, output_path = "-";
+  int64_t updates = 10000, seed = 1, threads = 0, trajectories = adaptation.trajectories;
+  bool force = false, quiet = false;
+  Options options("synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
+                  "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
+  options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
+      .text('w', "world", "WORLD", concat("new environments too: ", kWorldNames).c_str(), world_name)
+      .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
+      .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", trajectories, 1, 100000)
+      .call(0, "train", "WHAT", "embeddings, and behind it +heads, +coefficients, or both [embeddings]",
+            [&](const std::string& list) { adaptation.targets = parse_targets(list); })
+      .real(0, "lr", "X", "learning rate of Adam", adaptation.adam.learning_rate, 0, 1)
+      .real(0, "weight-decay", "X", "L2 term added to the gradient", adaptation.adam.weight_decay, 0, 1)
+      .real(0, "reward-loss", "X", "weight of reward prediction", adaptation.losses.reward, 0, 1e6)
+      .real(0, "env-loss", "X", "weight of environment disentanglement", adaptation.losses.env, 0, 1e6)
+      .real(0, "task-loss", "X", "weight of task disentanglement", adaptation.losses.task, 0, 1e6)
+      .real(0, "embedding-sd", "X", "new embeddings start as N(0, X^2); 0: Xavier uniform", adaptation.embedding_sd, 0, 1000)
+      .integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
+      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)
+      .text('o', "output", "FILE", "write the checkpoint to FILE", output_path)
+      .flag('f', "force", "write the checkpoint to a terminal", force)
+      .flag('q', "quiet", "no progress", quiet);
+  options.parse(argc, argv);
+  if (checkpoint_path.empty()) fail(Exit::kUsage, "-c CHECKPOINT is missing");
+  adaptation.trajectories = int(trajectories);
+
+  catch_stop_signals();
+  Parallel parallel{int(threads)};
+  const Checkpoint checkpoint = load_checkpoint(checkpoint_path);
+  const std::unique_ptr<World> more = world_name.empty() ? nullptr : open_world(world_name);
+  const std::unique_ptr<World> from = world_of(checkpoint, more.get());
+  const Model model = load_model(checkpoint, *from);
+  const std::unique_ptr<World> wider = wider_world(*from, more.get(), world_name);
+  const World& world = *wider;
+  Adaptation adapted(world, parallel, widen(model, *from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation, uint64_t(seed));
+  Output output(output_path, Output::Kind::kBinary, force);
+  Input input("-");
+  TrajectoryStream stream(input, world, {}, model.window);
+  while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
+  if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
+  if (!quiet)
+    std::fprintf(stderr, "synpo-finetune: %zu demonstrations, %d new environments, %d new tasks\n", adapted.demonstrations(), adapted.new_envs(),
+                 adapted.new_tasks());
+  Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
+  for (int64_t i = 0; i < updates; ++i) {
+    const Losses losses = adapted.update();
+    progress.update(uint64_t(i + 1), "loss " + std::to_string(losses.total).substr(0, 5));
+    stop_if_asked();
+  }
+  progress.finish();
+  output.write(format_checkpoint(adapted.checkpoint(checkpoint.options)));
+  output.finish();
+  return 0;
+}

@@ -1,0 +1,29 @@
+// The commands of synpo-matrix, and what they share.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/files/io.h"
+#include "base/cli/options.h"
+#include "stats/bootstrap.h"
+#include "stats/matrix/merge.h"
+
+namespace synpo {
+
+constexpr int kMostFiles = 100000;
+
+// Adds --samples and -s.
+void add_bootstrap(Options& options, BootstrapPlan& plan, int64_t& seed);
+
+int matrix_split(int argc, char** argv);
+int matrix_summary(int argc, char** argv);
+int matrix_table(int argc, char** argv);
+int matrix_compare(int argc, char** argv);
+int matrix_rows(int argc, char** argv);
+int matrix_cols(int argc, char** argv);
+int matrix_show(int argc, char** argv);
+int matrix_filter(int argc, char** argv);
+int matrix_wide(int argc, char** argv);
+int matrix_merge(int argc, char** argv);
+
+}  // namespace synpo

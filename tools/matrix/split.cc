@@ -1,0 +1,96 @@
+// synpo-matrix split: draws which pairs of environments and tasks training sees.
+#include <algorithm>
+#include <cstdlib>
+#include <stdexcept>
+
+#include "base/error.h"
+#include "format/pairs.h"
+#include "play/world_factory.h"
+#include "matrix/matrix.h"
+#include "stats/matrix/split.h"
+
+namespace synpo {
+namespace {
+
+// Names of a world that this program does not know: those listed, or so many with numbers.
+std::vector<std::string> any_names(const std::string& option, const std::string& chosen, const std::string& stem) {
+  if (chosen.empty()) fail(Exit::kUsage, option, " is needed with -w any: how many, or names with commas between");
+  if (chosen.find_first_not_of("0123456789") != std::string::npos) return split_names(chosen);
+  const size_t count = chosen.size() > 7 ? 0 : std::stoul(chosen);
+  if (count < 1 || count > 1000000) fail(Exit::kUsage, option, " ", chosen, ": expected 1 to 1000000, or names");
+  std::vector<std::string> names;
+  for (size_t i = 1; i <= count; ++i) names.push_back(stem + std::to_string(i));
+  return names;
+}
+
+}  // namespace
+
+int matrix_split(int argc, char** argv) {
+  SplitPlan plan;
+  std::string world = "gridworld", envs, tasks, parts, output_path = "-";
+  int64_t seed = 1, setting = 1;
+  double ratio = 0;
+  const auto count_into = [](int64_t& value) {
+    return [&value](const std::string& text) {
+      value = parse_count(text);
+      if (value < 0) throw std::invalid_argument("expected a whole number, at least 0");
+    };
+  };
+  const auto add_single = [&](const std::string& text) {
+    const std::vector<std::string> names = split_names(text);
+    if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
+    plan.singles.emplace_back(names[0], names[1]);
+  };
+  Options options("synpo-matrix split", "[OPTION]... >PAIRS", "Draws which pairs of environments and tasks are seen in training.");
+  options.call('n', "seen", "COUNT", "seen pairs [36 %: 144 of 400; with --setting 2 or 3 all of P]", count_into(plan.seen))
+      .call(0, "ratio", "R", "seen pairs as a share of all (of P), instead of -n",
+            [&](const std::string& text) {
+              char* end = nullptr;
+              ratio = std::strtod(text.c_str(), &end);
+              if (text.empty() || *end || !(ratio > 0 && ratio <= 1)) throw std::invalid_argument("expected a number over 0 and up to 1");
+            })
+      .call(0, "cover", "COUNT", "at least so many seen per environment and task [4, or what -n allows]", count_into(plan.cover))
+      .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
+      .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
+      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own", world)
+      .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
+      .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
+      .section("Transfer settings")
+      .integer(0, "setting", "N", "2 or 3: add the column part with P, Q and rest", setting, 1, 3)
+      .call(0, "p-envs", "COUNT", "the first so many environments belong to P [half]", count_into(plan.p_envs))
+      .call(0, "p-tasks", "COUNT", "the first so many tasks belong to P [half]", count_into(plan.p_tasks))
+      .text(0, "part", "LIST", "write only these parts, as in P or P,Q", parts)
+      .section("Output")
+      .text('o', "output", "FILE", "where the pairs go", output_path);
+  options.parse(argc, argv);
+  if (options.given("seen") && options.given("ratio")) fail(Exit::kUsage, "give either --seen or --ratio");
+  if (world == "any") {
+    plan.envs = any_names("--envs", envs, "env");
+    plan.tasks = any_names("--tasks", tasks, "task");
+  } else {
+    const std::unique_ptr<World> opened = open_world(world);
+    std::vector<std::string> env_names;
+    for (const Environment& env : opened->environments()) env_names.push_back(env.name);
+    plan.envs = choose_names("--envs", envs, env_names);
+    plan.tasks = choose_names("--tasks", tasks, opened->task_names());
+  }
+  plan.seed = uint64_t(seed);
+  plan.setting = int(setting);
+  plan.ratio = ratio;
+
+  const std::vector<std::string> wanted = split_names(parts);
+  for (const std::string& part : wanted)
+    if (!parts.empty() && (setting == 1 || (part != "P" && part != "Q" && part != "rest")))
+      fail(Exit::kUsage, "--part ", quoted(part),
+           setting == 1 ? ": there are no parts without --setting 2 or 3" : ": expected P, Q or rest");
+  std::vector<PairRow> rows;
+  for (const SplitPair& pair : split_pairs(plan))
+    if (parts.empty() || std::find(wanted.begin(), wanted.end(), pair.part) != wanted.end())
+      rows.push_back({pair.env, pair.task, pair.seen, pair.part});
+  Output output(output_path);
+  write_pairs(output, rows);
+  output.finish();
+  return 0;
+}
+
+}  // namespace synpo

@@ -1,0 +1,52 @@
+// synpo-matrix table: methods against seen and unseen pairs, with means and standard deviations over runs.
+#include <stdexcept>
+
+#include "base/error.h"
+#include "stats/report/method_table.h"
+#include "matrix/matrix.h"
+#include "stats/matrix/split.h"
+
+namespace synpo {
+
+int matrix_table(int argc, char** argv) {
+  std::string format = "text", output_path = "-";
+  std::vector<std::string> subsets = {"seen", "unseen"};
+  const MeasureKind* measure = &find_measure("success");
+  BootstrapPlan plan;
+  int64_t seed = 1;
+  bool brief = false;
+  Options options("synpo-matrix table", "[OPTION]... [MATRIX]...",
+                  "A line per method: mean and sd over runs, interquartile mean and interval, for seen and unseen pairs.");
+  options
+      .call('f', "format", "FORMAT", "text, tsv, markdown or latex [text]",
+            [&](const std::string& name) {
+              if (name != "text" && name != "tsv" && name != "markdown" && name != "latex")
+                throw std::invalid_argument("expected text, tsv, markdown or latex");
+              format = name;
+            })
+      .call(0, "subset", "LIST", "which columns, of seen, unseen, all, P, Q, rest [seen,unseen]",
+            [&](const std::string& list) {
+              subsets = split_names(list);
+              for (const std::string& name : subsets)
+                if (!is_subset(name)) throw std::invalid_argument("expected some of seen, unseen, all, P, Q, rest");
+            })
+      .call(0, "measure", "NAME", "success, reward, length, wrong or timeouts [success]",
+            [&](const std::string& name) { measure = &find_measure(name); })
+      .flag('b', "brief", "mean and sd alone", brief)
+      .flag(0, "pair-by-pair", "the bootstrap draws runs in each pair on its own", plan.pair_by_pair);
+  add_bootstrap(options, plan, seed);
+  options.text('o', "output", "FILE", "where the table goes", output_path);
+  const Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles));
+  plan.seed = uint64_t(seed);
+  const MethodTable table = tabulate(matrix, subsets, *measure, plan);
+  Output output(output_path);
+  if (format == "tsv")
+    write_method_table(output, table);
+  else
+    output.write(method_table_text(
+        table, format == "latex" ? TableFormat::kLatex : format == "markdown" ? TableFormat::kMarkdown : TableFormat::kText, brief));
+  output.finish();
+  return 0;
+}
+
+}  // namespace synpo

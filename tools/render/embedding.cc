@@ -1,0 +1,96 @@
+// synpo-render embedding: where a checkpoint's environments and tasks lie in their embedding spaces.
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.h"
+#include "draw/grid/maze_picture.h"
+#include "draw/plot/embedding_picture.h"
+#include "play/model.h"
+#include "render/render.h"
+#include "world/grid/grid_set.h"
+
+using namespace synpo;
+
+namespace {
+
+// A row of an embedding table, in the order of the picture.
+struct Row {
+  int index;
+  std::string name;
+};
+
+// Embeddings as the policy uses them.
+Embeddings read_embeddings(const Model& model, const TensorInfo* place, const std::string& title, const std::vector<Row>& rows) {
+  Embeddings out{title, {}, {}, model.shape.embedding, {}};
+  for (const Row& row : rows) {
+    out.names.push_back(row.name);
+    const float* values = model.parameters.data() + place->offset + size_t(row.index) * out.size;
+    double square = 0;
+    for (int i = 0; i < out.size; ++i) square += double(values[i]) * values[i];
+    const double factor = model.shape.normalise_embeddings && square > 0 ? std::sqrt(out.size / square) : 1;
+    for (int i = 0; i < out.size; ++i) out.values.push_back(factor * values[i]);
+  }
+  return out;
+}
+
+std::string count_text(size_t drawn, int all) { return int(drawn) == all ? concat(all) : concat(drawn, " of ", all); }
+
+}  // namespace
+
+int embedding(int argc, char** argv) {
+  EmbeddingStyle style;
+  PictureOptions picture;
+  std::string kind = "pca", metric = "cosine";
+  bool all = false;
+  Options options("synpo-render embedding", "[OPTION]... [CHECKPOINT]", "Draws a checkpoint's embeddings of environments and of tasks side by side.");
+  options.choice(0, "kind", "KIND", "pca: two principal components; distance: matrices", kind, {"pca", "distance"})
+      .choice(0, "metric", "NAME", "distances: cosine or euclidean", metric, {"cosine", "euclidean"})
+      .flag(0, "all", "environments and tasks of no seen pair too", all)
+      .call(0, "title", "TEXT", "title above the picture", drawn(style.title));
+  picture.add_to(options);
+  const auto operands = options.parse(argc, argv, 0, 1);
+  if (options.given("metric") && kind != "distance") fail(Exit::kUsage, "--metric is for --kind distance");
+  style.scale = picture.scale;
+
+  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
+  const std::unique_ptr<World> restored = world_of(checkpoint);
+  const World& world = *restored;
+  const Model model = load_model(checkpoint, world);
+  const auto* grid = dynamic_cast<const GridSet*>(restored.get());
+
+  std::vector<Row> envs, tasks;
+  const auto trained = [&](int EnvTask::*side, int index) {
+    return all || std::any_of(model.seen.begin(), model.seen.end(), [&](const EnvTask& pair) { return pair.*side == index; });
+  };
+  for (int i = 0; i < world.envs(); ++i)
+    if (trained(&EnvTask::env, i)) envs.push_back({i, world.environments()[i].name});
+  for (int i = 0; i < world.task_count(); ++i)
+    if (trained(&EnvTask::task, i)) tasks.push_back({i, world.task_names()[i]});
+  const auto treasures = [&](const Row& row) { return std::pair(grid->tasks()[row.index].first, grid->tasks()[row.index].second); };
+  if (grid) std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
+
+  std::vector<Embeddings> panels;
+  std::string of;
+  if (const TensorInfo* place = model.policy->parameters().find("embedding.env")) {
+    panels.push_back(read_embeddings(model, place, "environments", envs));
+    of = concat(count_text(envs.size(), world.envs()), " environments and ");
+  }
+  if (const TensorInfo* place = model.policy->parameters().find("embedding.task")) {
+    panels.push_back(read_embeddings(model, place, "tasks", tasks));
+    of += concat(count_text(tasks.size(), world.task_count()), " tasks");
+    if (grid)
+      for (const Row& row : tasks) panels.back().marks.push_back([task = grid->tasks()[row.index]](Canvas& canvas, const Box& box) { draw_task(canvas, box, task); });
+  }
+  if (panels.empty()) fail(Exit::kData, "method ", quoted(model.method), " has no embeddings");
+  const char* what = kind == "pca" ? "principal components" : metric == "cosine" ? "cosine distance" : "Euclidean distance";
+  style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", of, ", size ",
+                         model.shape.embedding, "; ", model.method, ", ", model.updates, " updates",
+                         grid ? "; a task's mark: left its first treasure, right its second" : "");
+  const Font font(picture.font);
+  if (kind == "pca")
+    finish(output, draw_embedding_map(panels, style, font));
+  else
+    finish(output, draw_embedding_distances(panels, metric == "cosine" ? Distance::kCosine : Distance::kEuclidean, style, font));
+  return 0;
+}

@@ -1,0 +1,105 @@
+// synpo-render heatmap: success matrices, one or several side by side.
+#include <algorithm>
+
+#include "base/error.h"
+#include "draw/plot/heatmap.h"
+#include "draw/terminal/terminal.h"
+#include "stats/matrix/merge.h"
+#include "render/render.h"
+#include "world/grid/task.h"
+
+using namespace synpo;
+
+namespace {
+
+struct PanelMatrix {
+  std::string title;
+  Matrix matrix;
+};
+
+struct PanelChoice {
+  std::string by = "file", method, colours = "seen";
+};
+
+constexpr size_t kMostPanels = 100;
+
+// The matrix whole, or one for each method or seed, in the order of their first rows.
+std::vector<PanelMatrix> split(const Matrix& matrix, const PanelChoice& choice) {
+  if (choice.by == "file") return {{"", matrix}};
+  std::vector<PanelMatrix> out;
+  for (const MatrixRow& row : matrix.rows) {
+    if (!choice.method.empty() && row.method != choice.method) continue;
+    const std::string title = choice.by == "seed" ? concat("seed ", row.seed) : row.method;
+    auto panel = std::find_if(out.begin(), out.end(), [&](const PanelMatrix& other) { return other.title == title; });
+    if (panel == out.end() && out.size() == kMostPanels) fail(Exit::kData, "more than ", kMostPanels, " panels cannot be drawn");
+    if (panel == out.end()) panel = out.insert(out.end(), {title, {{}, matrix.has_part, matrix.extra_columns}});
+    panel->matrix.rows.push_back(row);
+  }
+  return out;
+}
+
+std::vector<HeatPanel> read_panels(const std::vector<LabelledFiles>& files, const PanelChoice& choice) {
+  std::vector<HeatPanel> panels;
+  for (const LabelledFiles& one : files) {
+    for (const PanelMatrix& part : split(read_matrices(one.paths), choice)) {
+      const std::string title = one.label + (one.label.empty() || part.title.empty() ? "" : ", ") + part.title;
+      try {
+        panels.push_back({title, pool_matrix(part.matrix, choice.method, choice.colours == "part")});
+      } catch (const Error& error) {
+        fail(error.code(), title.empty() ? "" : quoted(title) + ": ", error.what());
+      }
+    }
+  }
+  if (panels.empty()) fail(Exit::kData, "no row of the method ", quoted(choice.method));
+  return panels;
+}
+
+std::string ansi(const HeatFigure& figure, const HeatmapStyle& style, int width) {
+  std::string text = style.title.empty() ? "" : style.title + "\n\n";
+  for (const HeatPanel& panel : figure.panels) {
+    if (&panel != &figure.panels[0]) text += '\n';
+    if (!panel.title.empty()) text += panel.title + '\n';
+    text += terminal_matrix(panel.table, find_scheme(style.scheme), environment_colour(), width);
+  }
+  return text;
+}
+
+}  // namespace
+
+int heatmap(int argc, char** argv) {
+  HeatmapStyle style;
+  PictureOptions picture;
+  PanelChoice choice;
+  HeatOrder tasks = HeatOrder::kPaper, envs = HeatOrder::kPaper;
+  bool no_values = false;
+  Options options("synpo-render heatmap", "[OPTION]... [[LABEL=]MATRIX[,MATRIX]...]...",
+                  "Draws success matrices side by side: tasks down, environments across, darker is better.");
+  options.choice(0, "panels", "WHAT", "a panel for each file, method or seed", choice.by, {"file", "method", "seed"})
+      .text(0, "method", "NAME", "only the rows of this method", choice.method)
+      .call(0, "order", "ORDER", "of tasks and environments: paper, given, natural, mean or cluster [paper]",
+            [&](const std::string& name) { tasks = envs = find_order(name); })
+      .call(0, "task-order", "ORDER", "of tasks alone", [&](const std::string& name) { tasks = find_order(name); })
+      .call(0, "env-order", "ORDER", "of environments alone", [&](const std::string& name) { envs = find_order(name); })
+      .flag(0, "margins", "the mean of each task and each environment", style.margins)
+      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]",
+            [&](const std::string& name) { style.scheme = find_scheme(name).name; })
+      .choice(0, "by", "COLUMN", "what the colours tell apart: seen or part", choice.colours, {"seen", "part"})
+      .flag(0, "no-values", "leave the rates out of the cells", no_values)
+      .real(0, "cell", "POINTS", "side of a cell; 0: by the size of the matrix", style.cell_pt, 0, 200)
+      .call(0, "title", "TEXT", "title above the picture", drawn(style.title));
+  picture.add_ansi(options);
+  picture.add_to(options);
+  const std::vector<LabelledFiles> files = labelled_files(options.parse(argc, argv, 0, 1000));
+  picture.check(options, {"margins", "no-values", "cell"});
+  style.values = !no_values;
+  style.scale = picture.scale;
+  Output output = picture.open();
+  if (picture.ansi) {
+    const int width = terminal_width(output.is_stdout() ? 1 : -1);
+    finish(output, ansi(arrange(read_panels(files, choice), grid_task_names(), tasks, envs), style, width));
+    return 0;
+  }
+  const Font font(picture.font);
+  finish(output, draw_heatmap(arrange(read_panels(files, choice), grid_task_names(), tasks, envs), style, font));
+  return 0;
+}

@@ -1,0 +1,72 @@
+// What the commands of synpo-render share.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/files/io.h"
+#include "base/cli/options.h"
+#include "draw/canvas/canvas.h"
+
+// What every command takes: where the picture goes, its size and its font; and --ansi, where the command can draw with characters.
+struct PictureOptions {
+  std::string output = "-", font;
+  bool force = false, ansi = false;
+  double scale = 2;
+
+  void add_to(synpo::Options& options) {
+    options.section("picture")
+        .text('o', "output", "FILE", "write the PNG to FILE", output)
+        .flag('f', "force", "write to a terminal too", force)
+        .real(0, "scale", "X", "pixels per point (text is about 9 points high)", scale, 0.25, 16)
+        .text(0, "font", "FILE", "TrueType font instead of DejaVu Sans", font);
+  }
+
+  void add_ansi(synpo::Options& options) {
+    options.flag(0, "ansi", "coloured blocks for a terminal, as text, instead of a PNG", ansi);
+  }
+  // Throws kUsage for --ansi with an option that only a PNG knows: those of the command, and the size and the font.
+  void check(const synpo::Options& options, std::vector<const char*> png_only) const {
+    png_only.insert(png_only.end(), {"scale", "font"});
+    for (const char* option : png_only)
+      if (ansi && options.given(option)) synpo::fail(synpo::Exit::kUsage, "--", option, " is for a PNG, not for --ansi");
+  }
+
+  synpo::Output open() const {
+    return synpo::Output(output, ansi ? synpo::Output::Kind::kText : synpo::Output::Kind::kBinary, force);
+  }
+};
+
+inline void finish(synpo::Output& output, const std::string& text) {
+  output.write(text);
+  output.finish();
+}
+inline void finish(synpo::Output& output, const synpo::Canvas& canvas) { finish(output, canvas.png()); }
+
+// Files of one label: runs of one method, shards of one matrix.
+struct LabelledFiles {
+  std::string label;
+  std::vector<std::string> paths;
+};
+
+// Operands FILE, LABEL=FILE[,FILE]..., or LABEL= in front of FILEs; none is standard input. Where there is a file of just that name, it
+// is meant. A file without a label has its own name for one, and none where it is alone. Throws kUsage for what can't be read so, and
+// for labels that cannot be drawn.
+std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands);
+
+// The argument of an option that is drawn. Throws std::invalid_argument where it is not UTF-8 or has control characters.
+const std::string& drawable(const std::string& text);
+// Takes a title from an option.
+inline auto drawn(std::string& title) {
+  return [&title](const std::string& given) { title = drawable(given); };
+}
+
+// Whether the world of -w is the kitchens; else it is mazes. Throws kUsage for one that cannot be drawn.
+bool draws_kitchens(const std::string& world);
+
+int heatmap(int argc, char** argv);
+int curves(int argc, char** argv);
+int embedding(int argc, char** argv);
+int episode(int argc, char** argv);
+int policy(int argc, char** argv);
+int features(int argc, char** argv);
