@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "base/error.h"
-#include "base/hash.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
+#include "base/error.h"
+#include "base/hash.h"
 #include "base/signals.h"
 #include "format/matrix.h"
 #include "play/evaluate.h"
@@ -26,11 +26,16 @@ int body(int argc, char** argv) {
       .text('p', "pairs", "FILE", "pairs to run, all its rows: TSV env, task (all pairs)", pairs_path)
       .text('w', "world", "WORLD", "kitchen:DIR, where the checkpoint's kitchens lie in files of their own", world_name)
       .integer('n', "count", "N", "episodes of every pair", count, 1, 100000000)
-      .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", first, 0, 1000000000000)
-      .integer('s', "seed", "N", "seed of the start states, which are the same for every checkpoint", seed, 0, INT64_MAX)
-      .real(0, "temperature", "T", "actions are drawn from the policy, its scores divided by T; 0: always the best one", temperature, 0, 1000)
+      .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", first, 0,
+               1000000000000)
+      .integer('s', "seed", "N", "seed of the start states, which are the same for every checkpoint", seed, 0,
+               INT64_MAX)
+      .real(0, "temperature", "T", "actions are drawn from the policy, its scores divided by T; 0: always the best one",
+            temperature, 0, 1000)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)
-      .text(0, "record", "FILE", "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix", record_path)
+      .text(0, "record", "FILE",
+            "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix",
+            record_path)
       .text('o', "output", "FILE", "write the matrix to FILE", output_path)
       .flag(0, "describe", "print what the checkpoint says of itself, as JSON, and quit", describe)
       .flag('q', "quiet", "no progress", quiet);
@@ -58,7 +63,8 @@ int body(int argc, char** argv) {
   if (pairs.empty()) fail(Exit::kData, "no pair in '", pairs_path, "'");
 
   const bool records_to_stdout = record_path == "-";
-  if (records_to_stdout && output_path == "-" && options.given("output")) fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
+  if (records_to_stdout && output_path == "-" && options.given("output"))
+    fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
   std::unique_ptr<Output> record, output;
   if (!record_path.empty()) record = std::make_unique<Output>(record_path);
   if (!records_to_stdout || output_path != "-") output = std::make_unique<Output>(output_path);
@@ -75,12 +81,11 @@ int body(int argc, char** argv) {
   Progress progress("synpo-eval", "episodes", episodes.size(), quiet);
   EpisodeSink sink;
   if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
-  const std::vector<PairResult> results =
-      evaluate(parallel, *model.policy, world, pairs, episodes, {uint64_t(seed), model.window, temperature}, sink,
-               [&](size_t done) {
-                 progress.update(done);
-                 stop_if_asked();
-               });
+  const std::vector<PairResult> results = evaluate(parallel, *model.policy, world, pairs, episodes,
+                                                   {uint64_t(seed), model.window, temperature}, sink, [&](size_t done) {
+                                                     progress.update(done);
+                                                     stop_if_asked();
+                                                   });
   progress.finish();
   if (record) record->finish();
   if (!output) return 0;

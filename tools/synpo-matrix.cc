@@ -1,4 +1,5 @@
-// synpo-matrix: splits of pairs into seen and unseen, and what success matrices say. A command each in synpo-matrix-*.cc.
+// synpo-matrix: splits of pairs into seen and unseen, and what success matrices say. A command each in
+// synpo-matrix-*.cc.
 #include "matrix/matrix.h"
 
 #include <cstdio>
@@ -15,8 +16,9 @@ void add_bootstrap(Options& options, BootstrapPlan& plan, int64_t& seed) {
 int matrix_summary(int argc, char** argv) {
   bool table = false, quiet = false;
   std::string output_path = "-";
-  Options options("synpo-matrix summary", "[OPTION]... [MATRIX]...",
-                  "Success, reward, length, wrong picks and timeouts over seen and unseen pairs; several runs with mean and sd.");
+  Options options(
+      "synpo-matrix summary", "[OPTION]... [MATRIX]...",
+      "Success, reward, length, wrong picks and timeouts over seen and unseen pairs; several runs with mean and sd.");
   options.flag(0, "tsv", "a table for machines", table)
       .flag('q', "quiet", "no notes on stderr", quiet)
       .text('o', "output", "FILE", "where the summary goes", output_path);

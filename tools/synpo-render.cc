@@ -5,13 +5,13 @@
 
 #include "base/error.h"
 #include "draw/grid/agent_view.h"
+#include "draw/grid/maze_picture.h"
 #include "draw/kitchen/kitchen_agent_view.h"
 #include "draw/kitchen/kitchen_picture.h"
-#include "draw/grid/maze_picture.h"
 #include "draw/terminal/terminal.h"
-#include "world/kitchen/plan.h"
 #include "world/grid/maze.h"
 #include "world/grid/task.h"
+#include "world/kitchen/plan.h"
 
 using namespace synpo;
 
@@ -27,7 +27,8 @@ const Plan& find_plan(const std::vector<Plan>& plans, const std::string& name, c
 }
 
 template <class Plan>
-std::vector<Plan> choose_plans(const std::vector<Plan>& plans, const std::vector<std::string>& names, const char* kind) {
+std::vector<Plan> choose_plans(const std::vector<Plan>& plans, const std::vector<std::string>& names,
+                               const char* kind) {
   if (names.empty()) return plans;
   std::vector<Plan> chosen;
   for (const std::string& name : names) chosen.push_back(find_plan(plans, name, kind));
@@ -44,7 +45,8 @@ int map(int argc, char** argv) {
   MapStyle style;
   PictureOptions picture;
   std::string world = "gridworld";
-  Options options("synpo-render map", "[OPTION]... [NAME]...", "Draws mazes or kitchens: the ones named, else all, as a grid with their names.");
+  Options options("synpo-render map", "[OPTION]... [NAME]...",
+                  "Draws mazes or kitchens: the ones named, else all, as a grid with their names.");
   options.text('w', "world", "WORLD", kWorldHelp, world)
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .integer(0, "columns", "N", "mazes in a row; 0: a grid a little wider than high", style.columns, 0, 1000);
@@ -80,21 +82,26 @@ Canvas draw_maze_view(const ViewOptions& wanted, double scale, const Font& font)
   const int task = wanted.task.empty() ? 0 : find_task(wanted.task);
   const uint64_t pair = uint64_t(&maze - mazes.data()) * grid_tasks().size() + uint64_t(task);
   const ViewStyle style = {int(wanted.window), wanted.history, wanted.title, scale};
-  return draw_agent_view(expert_moment(maze, grid_tasks()[size_t(task)], wanted.random(pair), wanted.steps), style, font);
+  return draw_agent_view(expert_moment(maze, grid_tasks()[size_t(task)], wanted.random(pair), wanted.steps), style,
+                         font);
 }
 
 Canvas draw_kitchen_view(const ViewOptions& wanted, double scale, const Font& font) {
   const KitchenSet world;
-  const EnvTask pair = {wanted.env.empty() ? 0 : world.env_index(wanted.env), wanted.task.empty() ? 0 : world.task_index(wanted.task)};
+  const EnvTask pair = {wanted.env.empty() ? 0 : world.env_index(wanted.env),
+                        wanted.task.empty() ? 0 : world.task_index(wanted.task)};
   if (pair.env < 0) fail(Exit::kUsage, "no kitchen ", quoted(wanted.env), " in this world");
-  if (pair.task < 0) fail(Exit::kUsage, "no task ", quoted(wanted.task), ": expected an object and a receptacle, such as Mug-Sink");
-  return draw_kitchen_view(kitchen_moment(world, pair, wanted.random(world.pair_number(pair)), wanted.steps), {wanted.history, wanted.title, scale}, font);
+  if (pair.task < 0)
+    fail(Exit::kUsage, "no task ", quoted(wanted.task), ": expected an object and a receptacle, such as Mug-Sink");
+  return draw_kitchen_view(kitchen_moment(world, pair, wanted.random(world.pair_number(pair)), wanted.steps),
+                           {wanted.history, wanted.title, scale}, font);
 }
 
 int view(int argc, char** argv) {
   ViewOptions wanted;
   PictureOptions picture;
-  Options options("synpo-render view", "[OPTION]...", "Draws a moment of an expert's episode and what the agent sees of it.");
+  Options options("synpo-render view", "[OPTION]...",
+                  "Draws a moment of an expert's episode and what the agent sees of it.");
   options.text('w', "world", "WORLD", kWorldHelp, wanted.world)
       .text('e', "env", "NAME", "maze or kitchen; none: the world's first", wanted.env)
       .text('t', "task", "NAME", "task; none: the world's first, R-B or Container-Fridge", wanted.task)
@@ -107,16 +114,19 @@ int view(int argc, char** argv) {
   picture.add_to(options);
   options.parse(argc, argv);
   const bool kitchen = draws_kitchens(wanted.world);
-  if (kitchen && options.given("window")) fail(Exit::kUsage, "--window is for mazes, but the world is ", quoted(wanted.world));
+  if (kitchen && options.given("window"))
+    fail(Exit::kUsage, "--window is for mazes, but the world is ", quoted(wanted.world));
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   const Font font(picture.font);
-  finish(output, kitchen ? draw_kitchen_view(wanted, picture.scale, font) : draw_maze_view(wanted, picture.scale, font));
+  finish(output,
+         kitchen ? draw_kitchen_view(wanted, picture.scale, font) : draw_maze_view(wanted, picture.scale, font));
   return 0;
 }
 
 int body(int argc, char** argv) {
   return run_commands("synpo-render",
-                      "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and policies as PNG; runs networks over views.",
+                      "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and "
+                      "policies as PNG; runs networks over views.",
                       {{"heatmap", "success matrices", heatmap},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes and kitchens", map},
@@ -133,7 +143,9 @@ int body(int argc, char** argv) {
 bool draws_kitchens(const std::string& world) {
   if (world == "kitchen") return true;
   if (world == "gridworld" || world.starts_with("gridworld:")) return false;
-  if (world.starts_with("kitchen:")) fail(Exit::kUsage, "cannot draw the world ", quoted(world), ": of the kitchens, only those of 'kitchen' have plans");
+  if (world.starts_with("kitchen:"))
+    fail(Exit::kUsage, "cannot draw the world ", quoted(world),
+         ": of the kitchens, only those of 'kitchen' have plans");
   fail(Exit::kUsage, "unknown world ", quoted(world), ", expected gridworld, gridworld:DIR or kitchen");
 }
 

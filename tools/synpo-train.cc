@@ -6,10 +6,10 @@
 #include <cstdio>
 #include <memory>
 
-#include "base/clock.h"
-#include "base/error.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
+#include "base/clock.h"
+#include "base/error.h"
 #include "base/signals.h"
 #include "base/text.h"
 #include "learn/imitate.h"
@@ -36,14 +36,16 @@ std::string percent(double part) {
 
 void check_length(TrajectoryStream& stream, const Settings& settings) {
   const uint64_t length = stream.length_up_to(uint64_t(settings.expect));
-  if (length < uint64_t(settings.expect)) fail(Exit::kData, "the stream ended after ", length, " trajectories, expected ", settings.expect);
+  if (length < uint64_t(settings.expect))
+    fail(Exit::kData, "the stream ended after ", length, " trajectories, expected ", settings.expect);
 }
 
 // Updates until the total is reached or a signal comes; returns the signal, or 0.
 int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, double limit_s) {
   RunLog log(settings.log, !settings.resume.empty());
   const bool counted = run.total_updates() != kUnknown;
-  Progress progress("synpo-train", "updates", counted ? uint64_t(run.total_updates()) : 0, settings.quiet, uint64_t(run.updates()));
+  Progress progress("synpo-train", "updates", counted ? uint64_t(run.total_updates()) : 0, settings.quiet,
+                    uint64_t(run.updates()));
   const TimePoint start = now();
   TimePoint reported = start;
   const int64_t first = run.updates();
@@ -53,7 +55,9 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
   const int64_t measured = options.warm_up > 0 ? std::min<int64_t>(50, int64_t(options.warm_up)) : moves ? 1 : 50;
   std::string note;
   // With a limit in time the total is not known before some updates have been timed.
-  const auto goes_on = [&] { return run.updates() < run.total_updates() || (limit_s > 0 && run.updates() < first + measured); };
+  const auto goes_on = [&] {
+    return run.updates() < run.total_updates() || (limit_s > 0 && run.updates() < first + measured);
+  };
   while (goes_on() && stop_signal() == 0) {
     if (!run.update(stream)) fail(Exit::kData, "standard input has no trajectory");
     if (stream.ended()) check_length(stream, settings);
@@ -71,8 +75,9 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
       RunLogRow row = run.take_report();
       row.seconds = seconds_since(start);
       row.states_per_s /= seconds_since(reported);
-      note = short_count(row.states_per_s) + " states/s, loss " + std::to_string(row.loss).substr(0, 5) + ", right: move " + percent(row.right[0]) +
-             " pick " + percent(row.right[1]) + " walk on " + percent(row.right[2]) + " start " + percent(row.right[3]);
+      note = short_count(row.states_per_s) + " states/s, loss " + std::to_string(row.loss).substr(0, 5) +
+             ", right: move " + percent(row.right[0]) + " pick " + percent(row.right[1]) + " walk on " +
+             percent(row.right[2]) + " start " + percent(row.right[3]);
       if (settings.evaluates(done, last)) {
         row.evaluation = run.evaluate_sample(int(settings.evaluate_episodes));
         if (!settings.quiet)
@@ -95,8 +100,10 @@ int body(int argc, char** argv) {
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
-      .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones", s.time)
-      .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)", s.pairs)
+      .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones",
+            s.time)
+      .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)",
+            s.pairs)
       .choice('m', "method", "NAME", methods.c_str(), s.method, method_names())
       .text('w', "world", "WORLD", kWorldNames, s.world)
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
@@ -112,14 +119,16 @@ int body(int argc, char** argv) {
       fail(Exit::kUsage, "option --time: found ", quoted(s.time), ", ", error.what());
     }
   const bool resumes = !s.resume.empty();
-  if (resumes && (hyper.given() || !s.init.empty() || options.given("pairs") || options.given("method") || options.given("seed")))
+  if (resumes &&
+      (hyper.given() || !s.init.empty() || options.given("pairs") || options.given("method") || options.given("seed")))
     fail(Exit::kUsage, "--resume takes everything but the limit from the checkpoint");
   if (limit_s > 0 && options.given("count")) fail(Exit::kUsage, "-n and --time exclude each other");
   catch_stop_signals();
 
   Parallel parallel(int(s.threads));
   const Checkpoint from = resumes ? load_checkpoint(s.resume) : Checkpoint();
-  const std::unique_ptr<World> opened = resumes ? world_of(from, options.given("world") ? s.world : "") : open_world(s.world);
+  const std::unique_ptr<World> opened =
+      resumes ? world_of(from, options.given("world") ? s.world : "") : open_world(s.world);
   const World& world = *opened;
   std::vector<EnvTask> seen;
   if (!s.pairs.empty()) {
@@ -131,7 +140,8 @@ int body(int argc, char** argv) {
   if (resumes) {
     run = std::make_unique<Imitation>(world, parallel, from);
   } else {
-    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.sight()), seen, uint64_t(s.seed));
+    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.sight()), seen,
+                                      uint64_t(s.seed));
     if (!s.init.empty()) {
       Checkpoint init = load_checkpoint(s.init);
       init.seen.clear();  // of its own world

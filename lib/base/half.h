@@ -14,9 +14,11 @@ constexpr float kHalfMax = 65504;
 
 inline bool is_finite(Half half) { return (half.bits & 0x7c00) != 0x7c00; }
 
-// The value of a finite one, exactly, also where the processor takes numbers too small for a normal float as zero (parallel.h).
+// The value of a finite one, exactly, also where the processor takes numbers too small for a normal float as zero
+// (parallel.h).
 inline float to_float(Half half) {
-  const float normal = std::bit_cast<float>(uint32_t(half.bits & 0x7fff) << 13) * 0x1p112f, small = float(half.bits & 0x3ff) * 0x1p-24f;
+  const float normal = std::bit_cast<float>(uint32_t(half.bits & 0x7fff) << 13) * 0x1p112f,
+              small = float(half.bits & 0x3ff) * 0x1p-24f;
   const float magnitude = half.bits & 0x7c00 ? normal : small;
   return std::bit_cast<float>(std::bit_cast<uint32_t>(magnitude) | uint32_t(half.bits & 0x8000) << 16);
 }

@@ -21,8 +21,8 @@ inline void relax() {
 #endif
 }
 
-// While it lives, this thread takes numbers too small for a normal float as zero. Weights that decay and moments that fade end there,
-// and arithmetic on them takes a hundred times as long.
+// While it lives, this thread takes numbers too small for a normal float as zero. Weights that decay and moments that
+// fade end there, and arithmetic on them takes a hundred times as long.
 class FlushDenormals {
  public:
 #if defined(__x86_64__)

@@ -11,8 +11,8 @@ class Parallel {
   explicit Parallel(int threads = 0);
   ~Parallel();
   int threads() const;
-  // Calls work(shard, thread) for every shard in [0, shards), with thread in [0, threads()), for scratch memory only. Returns when
-  // all are done. An exception is passed on. Numbers too small for a normal float count as zero in `work`.
+  // Calls work(shard, thread) for every shard in [0, shards), with thread in [0, threads()), for scratch memory only.
+  // Returns when all are done. An exception is passed on. Numbers too small for a normal float count as zero in `work`.
   void run(int shards, const std::function<void(int shard, int thread)>& work);
 
  private:
@@ -27,6 +27,8 @@ struct Range {
 };
 // [0, n) in shards of `size`, the last one shorter.
 inline int shard_count(int n, int size) { return (n + size - 1) / size; }
-inline Range shard_range(int n, int size, int shard) { return {shard * size, n < (shard + 1) * size ? n : (shard + 1) * size}; }
+inline Range shard_range(int n, int size, int shard) {
+  return {shard * size, n < (shard + 1) * size ? n : (shard + 1) * size};
+}
 
 }  // namespace synpo

@@ -8,7 +8,20 @@ namespace synpo {
 
 // What a stream of random numbers is used for; two purposes never share numbers.
 enum class Purpose : uint32_t {
-  kPairOrder = 1, kEpisodeStart, kNoise, kSplit, kInit, kBatch, kRollIn, kEvaluation, kEvaluationPairs, kBootstrap, kDropout, kOwnMove, kSample, kLane,
+  kPairOrder = 1,
+  kEpisodeStart,
+  kNoise,
+  kSplit,
+  kInit,
+  kBatch,
+  kRollIn,
+  kEvaluation,
+  kEvaluationPairs,
+  kBootstrap,
+  kDropout,
+  kOwnMove,
+  kSample,
+  kLane,
   kLayout
 };
 

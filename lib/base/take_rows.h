@@ -9,7 +9,8 @@ namespace synpo {
 template <class T, class Row>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Row>& rows, size_t width = 1) {
   std::vector<T> result(rows.size() * width);
-  for (size_t i = 0; i < rows.size(); ++i) std::copy_n(values.data() + size_t(rows[i]) * width, width, result.data() + i * width);
+  for (size_t i = 0; i < rows.size(); ++i)
+    std::copy_n(values.data() + size_t(rows[i]) * width, width, result.data() + i * width);
   return result;
 }
 

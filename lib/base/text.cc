@@ -8,7 +8,10 @@ size_t utf8_length(std::string_view text, size_t at) {
   const auto byte = [&](size_t i) { return i < text.size() ? uint8_t(text[i]) : uint8_t{0}; };
   const uint8_t lead = byte(at);
   if (lead < 0x80) return at < text.size() ? 1 : 0;
-  const size_t length = lead >= 0xc2 && lead <= 0xdf ? 2 : (lead & 0xf0) == 0xe0 ? 3 : lead >= 0xf0 && lead <= 0xf4 ? 4 : 0;
+  const size_t length = lead >= 0xc2 && lead <= 0xdf   ? 2
+                        : (lead & 0xf0) == 0xe0        ? 3
+                        : lead >= 0xf0 && lead <= 0xf4 ? 4
+                                                       : 0;
   for (size_t i = 1; i < length; ++i)
     if ((byte(at + i) & 0xc0) != 0x80) return 0;
   const uint8_t second = byte(at + 1);
@@ -33,7 +36,8 @@ bool natural_less(const std::string& a, const std::string& b) {
   size_t i = 0, j = 0;
   while (i < a.size() && j < b.size()) {
     if (digit(a[i]) && digit(b[j])) {
-      const size_t i0 = std::min(a.find_first_not_of('0', i), a.size()), j0 = std::min(b.find_first_not_of('0', j), b.size());
+      const size_t i0 = std::min(a.find_first_not_of('0', i), a.size()),
+                   j0 = std::min(b.find_first_not_of('0', j), b.size());
       size_t i1 = i0, j1 = j0;
       while (i1 < a.size() && digit(a[i1])) ++i1;
       while (j1 < b.size() && digit(b[j1])) ++j1;

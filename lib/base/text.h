@@ -8,10 +8,12 @@
 
 namespace synpo {
 
-// Bytes of the character at `at`; 0 where there is none that is well formed (no overlong form, no surrogate, at most U+10FFFF).
+// Bytes of the character at `at`; 0 where there is none that is well formed (no overlong form, no surrogate, at most
+// U+10FFFF).
 size_t utf8_length(std::string_view text, size_t at);
 
-// Where the first byte stands that is not part of valid UTF-8 or that is a control character other than a tab; npos when there is none.
+// Where the first byte stands that is not part of valid UTF-8 or that is a control character other than a tab; npos
+// when there is none.
 size_t first_bad_byte(std::string_view text);
 
 // True when `a` comes before `b` with runs of digits compared as numbers: map2 before map10.

@@ -10,7 +10,9 @@ namespace {
 
 constexpr double kLightest = 0.955, kDarkest = 0.40;
 
-double to_srgb(double linear) { return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055; }
+double to_srgb(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
 double to_linear(double srgb) { return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4); }
 
 struct Linear {
@@ -25,7 +27,8 @@ Linear from_oklch(double lightness, double chroma, double hue_degrees) {
   const double l = cube(lightness + 0.3963377774 * a + 0.2158037573 * b);
   const double m = cube(lightness - 0.1055613458 * a - 0.0638541728 * b);
   const double s = cube(lightness - 0.0894841775 * a - 1.2914855480 * b);
-  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+  return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s,
+          -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
           -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
 }
 
@@ -60,7 +63,8 @@ const Scheme& find_scheme(const std::string& name) {
 }
 
 double luminance(Rgb colour) {
-  return 0.2126 * to_linear(colour.r / 255.0) + 0.7152 * to_linear(colour.g / 255.0) + 0.0722 * to_linear(colour.b / 255.0);
+  return 0.2126 * to_linear(colour.r / 255.0) + 0.7152 * to_linear(colour.g / 255.0) +
+         0.0722 * to_linear(colour.b / 255.0);
 }
 
 Rgb mix(Rgb from, Rgb to, double share) {

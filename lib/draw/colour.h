@@ -7,8 +7,8 @@
 
 namespace synpo {
 
-// A hue in the OKLCh space. ramp_colour() runs from a light tint at 0 to a dark shade at 1 with the same lightness for every
-// hue, so that cells of two hues can be compared, and a print in grey still shows the rate.
+// A hue in the OKLCh space. ramp_colour() runs from a light tint at 0 to a dark shade at 1 with the same lightness for
+// every hue, so that cells of two hues can be compared, and a print in grey still shows the rate.
 struct Ramp {
   double hue_degrees;
   double chroma;  // at most; less where sRGB cannot show it
@@ -22,8 +22,8 @@ struct Scheme {
   Ramp seen, unseen, other;  // `other` is for a third kind of cells: the pairs of part P
 };
 
-// "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figures 6 and 8), "blue-red" (Figures 4 and 5).
-// Throws std::invalid_argument for any other name.
+// "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figures 6 and 8), "blue-red" (Figures 4
+// and 5). Throws std::invalid_argument for any other name.
 const Scheme& find_scheme(const std::string& name);
 
 // The ramp of a group of the table; a grey one for all pairs (-1).

@@ -11,27 +11,38 @@ constexpr double kFloorTint = 0.62;  // of the way to white
 
 }  // namespace
 
-const std::array<Rgb, kTreasures> kPaperTreasures = {{{200, 38, 45}, {32, 90, 190}, {34, 134, 66}, {243, 146, 20}, {122, 56, 168}}};
+const std::array<Rgb, kTreasures> kPaperTreasures = {
+    {{200, 38, 45}, {32, 90, 190}, {34, 134, 66}, {243, 146, 20}, {122, 56, 168}}};
 const char* const kTreasureNames[kTreasures] = {"red", "blue", "green", "orange", "purple"};
 
-Rgb paper_colour(const Colour& colour) { return {uint8_t(std::lround(colour.r)), uint8_t(std::lround(colour.g)), uint8_t(std::lround(colour.b))}; }
+Rgb paper_colour(const Colour& colour) {
+  return {uint8_t(std::lround(colour.r)), uint8_t(std::lround(colour.g)), uint8_t(std::lround(colour.b))};
+}
 Rgb receptacle_colour(int receptacle) { return paper_colour(kReceptacleColours[size_t(receptacle)]); }
 Rgb object_colour(int object) { return paper_colour(kObjectColours[size_t(object)][0]); }
 
 std::array<Rgb, 2> paper_floor(uint64_t kitchen_hash) {
   const KitchenPalette palette(kitchen_hash);
-  return {mix(paper_colour(palette.floor[0]), kPaper, kFloorTint), mix(paper_colour(palette.floor[1]), kPaper, kFloorTint)};
+  return {mix(paper_colour(palette.floor[0]), kPaper, kFloorTint),
+          mix(paper_colour(palette.floor[1]), kPaper, kFloorTint)};
 }
 
 Rgb kitchen_cell_colour(char c, Rgb floor) {
   switch (c) {
-    case '#': return kPaperWall;
-    case 'c': return kPaperCounter;
-    case 't': return kPaperTable;
-    case 'F': return receptacle_colour(kFridge);
-    case 'M': return receptacle_colour(kMicrowave);
-    case 'S': return receptacle_colour(kSink);
-    default: return floor;
+    case '#':
+      return kPaperWall;
+    case 'c':
+      return kPaperCounter;
+    case 't':
+      return kPaperTable;
+    case 'F':
+      return receptacle_colour(kFridge);
+    case 'M':
+      return receptacle_colour(kMicrowave);
+    case 'S':
+      return receptacle_colour(kSink);
+    default:
+      return floor;
   }
 }
 

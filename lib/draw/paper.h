@@ -1,4 +1,5 @@
-// Colours for print of mazes and kitchens. What the agent sees has its own: kPalette of mazes, KitchenPalette of kitchens.
+// Colours for print of mazes and kitchens. What the agent sees has its own: kPalette of mazes, KitchenPalette of
+// kitchens.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,7 +10,8 @@
 
 namespace synpo {
 
-constexpr Rgb kPaperWall = {62, 70, 82}, kPaperFloor = {250, 249, 245}, kPaperGrid = {226, 224, 217}, kPaperAgent = {20, 20, 24};
+constexpr Rgb kPaperWall = {62, 70, 82}, kPaperFloor = {250, 249, 245}, kPaperGrid = {226, 224, 217},
+              kPaperAgent = {20, 20, 24};
 extern const std::array<Rgb, kTreasures> kPaperTreasures;
 extern const char* const kTreasureNames[kTreasures];
 

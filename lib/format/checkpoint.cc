@@ -77,7 +77,8 @@ Checkpoint read_checkpoint(Input& input) {
   c.file = read_safetensors(input);
   try {
     const SafeTensors& file = c.file;
-    if (file.metadata.count("format") == 0 || file.meta("format") != kFormat) fail(Exit::kData, "not a synpo checkpoint");
+    if (file.metadata.count("format") == 0 || file.meta("format") != kFormat)
+      fail(Exit::kData, "not a synpo checkpoint");
     const int64_t version = whole(file, "version");
     if (version < 1 || version > kCheckpointVersion)
       fail(Exit::kData, "version ", version, ", this build reads 1 to ", kCheckpointVersion);
@@ -88,7 +89,8 @@ Checkpoint read_checkpoint(Input& input) {
     c.window = int(std::min<int64_t>(whole(file, "window"), 1000));
     c.updates = whole(file, "updates");
     c.states = whole(file, "states");
-    if (std::max(c.updates, c.states) > kMostCount) fail(Exit::kData, "metadata 'updates', 'states': expected at most 2^53");
+    if (std::max(c.updates, c.states) > kMostCount)
+      fail(Exit::kData, "metadata 'updates', 'states': expected at most 2^53");
     c.seed = uint64_t(whole(file, "seed"));
     c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
     c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();
@@ -98,7 +100,8 @@ Checkpoint read_checkpoint(Input& input) {
     c.shape = shape.get<std::map<std::string, int64_t>>();
     c.options = structure(file, "options").get<std::map<std::string, std::string>>();
     for (const Json& env : structure(file, "envs"))
-      c.envs.push_back({env.at("name").get<std::string>(), parse_hex(env.at("hash").get<std::string>()), env.at("content").get<std::string>()});
+      c.envs.push_back({env.at("name").get<std::string>(), parse_hex(env.at("hash").get<std::string>()),
+                        env.at("content").get<std::string>()});
   } catch (const Error& error) {
     fail(error.code(), "cannot read ", input.name(), ": ", error.what());
   } catch (const Json::exception& error) {
@@ -116,7 +119,8 @@ std::string format_checkpoint(const Checkpoint& checkpoint) {
   SafeTensors file = checkpoint.file;
   file.metadata.clear();
   const OrderedJson metadata = to_json(checkpoint);
-  for (const auto& [key, value] : metadata.items()) file.metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
+  for (const auto& [key, value] : metadata.items())
+    file.metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
   return format_safetensors(file);
 }
 

@@ -26,8 +26,8 @@ struct Checkpoint {
   std::vector<Env> envs;
   std::vector<std::string> tasks;
   std::vector<std::pair<std::string, std::string>> seen;  // (env, task)
-  std::map<std::string, int64_t> shape;                    // sizes of the network
-  std::map<std::string, std::string> options;              // hyper-parameters of the training, as text
+  std::map<std::string, int64_t> shape;                   // sizes of the network
+  std::map<std::string, std::string> options;             // hyper-parameters of the training, as text
   int64_t updates = 0, states = 0;
   uint64_t seed = 0;
   SafeTensors file;  // the tensors; its metadata is made from the above

@@ -20,11 +20,27 @@ constexpr int64_t kMaxWhole = std::numeric_limits<int64_t>::max();
 
 // In the order in which they are written.
 enum Column {
-  kRun, kWorld, kWindow, kMethod, kSeed, kUpdates, kEvalSeed, kFirst, kEnv, kTask, kSeen, kEpisodes, kSuccesses, kWrong, kTimeouts,
-  kReward, kLength
+  kRun,
+  kWorld,
+  kWindow,
+  kMethod,
+  kSeed,
+  kUpdates,
+  kEvalSeed,
+  kFirst,
+  kEnv,
+  kTask,
+  kSeen,
+  kEpisodes,
+  kSuccesses,
+  kWrong,
+  kTimeouts,
+  kReward,
+  kLength
 };
-const char* const kColumns[] = {"run", "world", "window", "method", "seed", "updates", "eval_seed", "first_episode", "env", "task",
-                                "seen", "episodes", "successes", "wrong", "timeouts", "reward", "length"};
+const char* const kColumns[] = {"run",       "world",         "window",   "method", "seed",  "updates",
+                                "eval_seed", "first_episode", "env",      "task",   "seen",  "episodes",
+                                "successes", "wrong",         "timeouts", "reward", "length"};
 
 // A reader and the positions of the columns that this build knows; -1 where the file has no such column.
 class RowReader {
@@ -60,10 +76,11 @@ class RowReader {
     whole(kSuccesses, row.successes, 0, kMaxCount);
     whole(kWrong, row.wrong, 0, kMaxCount);
     whole(kTimeouts, row.timeouts, 0, kMaxCount);
-    if (row.successes > row.episodes) reader_.bad(at_[kSuccesses], concat("at most ", row.episodes, ", the row's episodes"));
+    if (row.successes > row.episodes)
+      reader_.bad(at_[kSuccesses], concat("at most ", row.episodes, ", the row's episodes"));
     if (row.successes + row.wrong + row.timeouts > row.episodes)
-      fail_row(concat("found ", row.successes, " successes + ", row.wrong, " wrong + ", row.timeouts, " timeouts, expected at most ",
-                      row.episodes, ", the row's episodes"));
+      fail_row(concat("found ", row.successes, " successes + ", row.wrong, " wrong + ", row.timeouts,
+                      " timeouts, expected at most ", row.episodes, ", the row's episodes"));
     if (at_[kReward] >= 0) {
       row.reward = reader_.real(at_[kReward]);
       if (std::abs(row.reward) > kMaxReward) reader_.bad(at_[kReward], "a sum between -1e15 and 1e15");
@@ -71,7 +88,8 @@ class RowReader {
     whole(kLength, row.length, 0, kMaxCount);
     if (part_ >= 0) {
       row.part = reader_.field(part_);
-      if (!row.part.empty() && row.part != "P" && row.part != "Q" && row.part != "rest") reader_.bad(part_, "P, Q, rest or nothing");
+      if (!row.part.empty() && row.part != "P" && row.part != "Q" && row.part != "rest")
+        reader_.bad(part_, "P, Q, rest or nothing");
     }
     for (int column : extra_) row.extra.push_back(reader_.field(column));
     return true;
@@ -128,7 +146,8 @@ Matrix read_matrix(Input& input) {
                              " on stands in line ", it->second, " already (same run and eval_seed)"));
     matrix.rows.push_back(std::move(row));
   }
-  if (matrix.rows.empty()) fail(Exit::kData, input.name(), ": line 1: found a header and no row, expected at least one pair");
+  if (matrix.rows.empty())
+    fail(Exit::kData, input.name(), ": line 1: found a header and no row, expected at least one pair");
   return matrix;
 }
 
@@ -141,7 +160,12 @@ void write_matrix(Output& output, const Matrix& matrix) {
   for (const MatrixRow& row : matrix.rows) {
     writer.text(row.run).text(row.world).whole(row.window).text(row.method).whole(row.seed).whole(row.updates);
     writer.whole(row.eval_seed).whole(row.first_episode).text(row.env).text(row.task).whole(int64_t{row.seen});
-    writer.whole(row.episodes).whole(row.successes).whole(row.wrong).whole(row.timeouts).real(row.reward).whole(row.length);
+    writer.whole(row.episodes)
+        .whole(row.successes)
+        .whole(row.wrong)
+        .whole(row.timeouts)
+        .real(row.reward)
+        .whole(row.length);
     if (matrix.has_part) writer.text(row.part);
     for (const std::string& field : row.extra) writer.text(field);
     writer.end_row();

@@ -15,7 +15,8 @@ constexpr size_t kMaxRows = 1000000;
 
 std::vector<PairRow> read_pairs(Input& input) {
   TsvReader reader(input);
-  const int env = reader.need("env"), task = reader.need("task"), seen = reader.find("seen"), part = reader.find("part");
+  const int env = reader.need("env"), task = reader.need("task"), seen = reader.find("seen"),
+            part = reader.find("part");
   std::vector<PairRow> rows;
   std::unordered_map<std::string, uint64_t> line_of;
   while (reader.next()) {
@@ -28,10 +29,13 @@ std::vector<PairRow> read_pairs(Input& input) {
     if (seen >= 0) row.seen = reader.integer(seen, 0, 1) == 1;
     if (part >= 0) {
       row.part = reader.field(part);
-      if (!row.part.empty() && row.part != "P" && row.part != "Q" && row.part != "rest") reader.bad(part, "P, Q, rest or nothing");
+      if (!row.part.empty() && row.part != "P" && row.part != "Q" && row.part != "rest")
+        reader.bad(part, "P, Q, rest or nothing");
     }
     const auto [it, fresh] = line_of.try_emplace(row.env + '\t' + row.task, reader.line());
-    if (!fresh) input.bad_line(concat("pair ", quoted(row.env), ", ", quoted(row.task), " stands in line ", it->second, " already"));
+    if (!fresh)
+      input.bad_line(
+          concat("pair ", quoted(row.env), ", ", quoted(row.task), " stands in line ", it->second, " already"));
     rows.push_back(std::move(row));
   }
   if (rows.empty()) fail(Exit::kData, input.name(), ": line 1: found a header and no row, expected at least one pair");

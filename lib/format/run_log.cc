@@ -56,16 +56,18 @@ void TsvLog::write(const std::vector<double>& values) {
 }
 
 RunLog::RunLog(const std::string& path, bool append)
-    : log_(path, append, {"update",     "states",     "trajectories",  "seconds",     "states_per_s", "learning_rate", "loss",
-                          "policy",     "reward",     "env",           "task",        "right_move",   "right_pick",    "right_walk_on",
-                          "right_start", "seen_success", "seen_reward", "unseen_success", "unseen_reward"}) {}
+    : log_(path, append,
+           {"update", "states", "trajectories", "seconds", "states_per_s", "learning_rate", "loss", "policy", "reward",
+            "env", "task", "right_move", "right_pick", "right_walk_on", "right_start", "seen_success", "seen_reward",
+            "unseen_success", "unseen_reward"}) {}
 
 void RunLog::write(const RunLogRow& row) {
   const double none = std::nan("");
   const RunLogRow::Evaluation evaluation = row.evaluation.value_or(RunLogRow::Evaluation{none, none, none, none});
-  log_.write({double(row.update), double(row.states), double(row.trajectories), row.seconds, row.states_per_s, row.learning_rate, row.loss, row.policy,
-              row.reward, row.env, row.task, row.right[0], row.right[1], row.right[2], row.right[3], evaluation.seen_success, evaluation.seen_reward,
-              evaluation.unseen_success, evaluation.unseen_reward});
+  log_.write({double(row.update), double(row.states), double(row.trajectories), row.seconds, row.states_per_s,
+              row.learning_rate, row.loss, row.policy, row.reward, row.env, row.task, row.right[0], row.right[1],
+              row.right[2], row.right[3], evaluation.seen_success, evaluation.seen_reward, evaluation.unseen_success,
+              evaluation.unseen_reward});
 }
 
 }  // namespace synpo

@@ -36,7 +36,8 @@ class Clock {
     if (rate <= 0) reader_.bad(rate_, "a rate above 0");
     const double worked = (states - kept_states) / rate, passed = seconds - before_;
     before_ = seconds;
-    // Less time has passed than the states took, beyond what six digits leave open: a new process, whose clock began at 0.
+    // Less time has passed than the states took, beyond what six digits leave open: a new process, whose clock began at
+    // 0.
     const bool resumed = passed < worked - 1e-4 * worked - 1e-5 * seconds - 0.01;
     return kept_elapsed + (resumed || passed <= 0 ? worked : passed);
   }
@@ -74,8 +75,10 @@ RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::s
     if (states_column >= 0) {
       const int64_t before = states.empty() ? 0 : states.back();
       const int64_t now = reader.integer(states_column, 0, INT64_MAX);
-      if (!states.empty() && now <= before) reader.bad(states_column, concat("more than the ", before, " of the row before"));
-      x = clock ? clock->at_row(double(now), double(before), table.x.empty() ? 0 : table.x.back() * 60) / 60 : double(now);
+      if (!states.empty() && now <= before)
+        reader.bad(states_column, concat("more than the ", before, " of the row before"));
+      x = clock ? clock->at_row(double(now), double(before), table.x.empty() ? 0 : table.x.back() * 60) / 60
+                : double(now);
       states.push_back(now);
     }
     updates.push_back(update);

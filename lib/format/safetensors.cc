@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr uint64_t kHeaderLimit = 100 << 20;     // as other readers of the format have it
+constexpr uint64_t kHeaderLimit = 100 << 20;  // as other readers of the format have it
 constexpr uint64_t kFileLimit = uint64_t{16} << 30;
 
 struct TypeName {
@@ -19,12 +19,8 @@ struct TypeName {
   const char* name;
   size_t size;
 };
-constexpr TypeName kTypes[] = {{TensorType::kF16, "F16", 2},
-                               {TensorType::kF32, "F32", 4},
-                               {TensorType::kF64, "F64", 8},
-                               {TensorType::kI32, "I32", 4},
-                               {TensorType::kI64, "I64", 8},
-                               {TensorType::kU8, "U8", 1},
+constexpr TypeName kTypes[] = {{TensorType::kF16, "F16", 2}, {TensorType::kF32, "F32", 4}, {TensorType::kF64, "F64", 8},
+                               {TensorType::kI32, "I32", 4}, {TensorType::kI64, "I64", 8}, {TensorType::kU8, "U8", 1},
                                {TensorType::kU64, "U64", 8}};
 
 const TypeName& type_name(TensorType type) {
@@ -43,7 +39,8 @@ constexpr TensorType type_of() {
 }
 
 uint64_t whole(const std::string& where, const Json& value) {
-  if (!value.is_number_unsigned()) fail(Exit::kData, where, ": found ", quoted(value.dump()), ", expected a whole number from 0");
+  if (!value.is_number_unsigned())
+    fail(Exit::kData, where, ": found ", quoted(value.dump()), ", expected a whole number from 0");
   return value.get<uint64_t>();
 }
 
@@ -56,7 +53,8 @@ std::string read_bytes(Input& input, uint64_t size, const char* what) {
     bytes.resize(had + part);
     const size_t got = input.read(bytes.data() + had, part);
     if (got < part)
-      fail(Exit::kData, "cannot read ", input.name(), ": it ends at byte ", input.offset(), ", in the middle of ", what);
+      fail(Exit::kData, "cannot read ", input.name(), ": it ends at byte ", input.offset(), ", in the middle of ",
+           what);
   }
   return bytes;
 }
@@ -86,7 +84,8 @@ std::vector<T> SafeTensors::get(const std::string& name) const {
   if (found == tensors.end()) fail(Exit::kData, "no tensor '", name, "'");
   const Tensor& tensor = found->second;
   if (tensor.type != type_of<T>())
-    fail(Exit::kData, "tensor '", name, "': found type ", type_name(tensor.type).name, ", expected ", type_name(type_of<T>()).name);
+    fail(Exit::kData, "tensor '", name, "': found type ", type_name(tensor.type).name, ", expected ",
+         type_name(type_of<T>()).name);
   std::vector<T> values(tensor.count());
   if (!values.empty()) std::memcpy(values.data(), tensor.bytes.data(), tensor.bytes.size());
   return values;
@@ -95,7 +94,8 @@ std::vector<T> SafeTensors::get(const std::string& name) const {
 template <class T>
 void SafeTensors::get(const std::string& name, T* values, size_t count) const {
   const std::vector<T> found = get<T>(name);
-  if (found.size() != count) fail(Exit::kData, "tensor '", name, "': found ", found.size(), " values, expected ", count);
+  if (found.size() != count)
+    fail(Exit::kData, "tensor '", name, "': found ", found.size(), " values, expected ", count);
   std::copy(found.begin(), found.end(), values);
 }
 
@@ -143,8 +143,10 @@ SafeTensors read_safetensors(Input& input) {
     if (!entry.is_object() || !entry.contains("dtype") || !entry.contains("shape") || !entry.contains("data_offsets"))
       bad(where, ": expected dtype, shape and data_offsets");
     const auto& type = entry["dtype"];
-    const auto known = std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return type == t.name; });
-    if (known == std::end(kTypes)) bad(where, ": type ", quoted(type.dump()), ", this build reads F16, F32, F64, I32, I64, U8 and U64");
+    const auto known =
+        std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return type == t.name; });
+    if (known == std::end(kTypes))
+      bad(where, ": type ", quoted(type.dump()), ", this build reads F16, F32, F64, I32, I64, U8 and U64");
     const auto& shape = entry["shape"];
     const auto& offsets = entry["data_offsets"];
     if (!shape.is_array() || shape.size() > 8) bad(where, ": shape is no array of at most 8 numbers");
@@ -159,15 +161,18 @@ SafeTensors read_safetensors(Input& input) {
       tensor.shape.push_back(int64_t(e));
     }
     const uint64_t begin = whole(where, offsets[0]), end = whole(where, offsets[1]);
-    if (end < begin || end - begin != bytes) bad(where, ": data_offsets ", begin, " to ", end, ", expected ", bytes, " bytes");
+    if (end < begin || end - begin != bytes)
+      bad(where, ": data_offsets ", begin, " to ", end, ", expected ", bytes, " bytes");
     places.push_back({begin, end, name});
   }
-  std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return std::tie(a.begin, a.end) < std::tie(b.begin, b.end); });
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return std::tie(a.begin, a.end) < std::tie(b.begin, b.end); });
   uint64_t at = 0;
   for (const Place& place : places) {
     if (place.begin != at) bad("tensor ", quoted(place.name), " begins at ", place.begin, ", expected ", at);
     at = place.end;
-    file.tensors[place.name].bytes = read_bytes(input, place.end - place.begin, ("tensor " + quoted(place.name)).c_str());
+    file.tensors[place.name].bytes =
+        read_bytes(input, place.end - place.begin, ("tensor " + quoted(place.name)).c_str());
   }
   char more;
   if (input.read(&more, 1) > 0) bad("bytes follow the last tensor");
@@ -180,11 +185,14 @@ std::string format_safetensors(const SafeTensors& file) {
   // The widest types first, so that every tensor is aligned.
   std::vector<std::pair<std::string, const Tensor*>> order;
   for (const auto& [name, tensor] : file.tensors) order.emplace_back(name, &tensor);
-  std::stable_sort(order.begin(), order.end(), [](const auto& a, const auto& b) { return type_size(a.second->type) > type_size(b.second->type); });
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return type_size(a.second->type) > type_size(b.second->type); });
   uint64_t at = 0;
   for (const auto& [name, pointer] : order) {
     const Tensor& tensor = *pointer;
-    header[name] = {{"dtype", type_name(tensor.type).name}, {"shape", tensor.shape}, {"data_offsets", {at, at + tensor.bytes.size()}}};
+    header[name] = {{"dtype", type_name(tensor.type).name},
+                    {"shape", tensor.shape},
+                    {"data_offsets", {at, at + tensor.bytes.size()}}};
     at += tensor.bytes.size();
   }
   std::string text = header.dump();
@@ -197,9 +205,9 @@ std::string format_safetensors(const SafeTensors& file) {
   return out;
 }
 
-#define SYNPO_INSTANTIATE(T)                                                                           \
-  template void SafeTensors::add(const std::string&, const std::vector<int64_t>&, const T*, size_t);  \
-  template void SafeTensors::get(const std::string&, T*, size_t) const;                               \
+#define SYNPO_INSTANTIATE(T)                                                                         \
+  template void SafeTensors::add(const std::string&, const std::vector<int64_t>&, const T*, size_t); \
+  template void SafeTensors::get(const std::string&, T*, size_t) const;                              \
   template std::vector<T> SafeTensors::get(const std::string&) const;
 SYNPO_INSTANTIATE(Half)
 SYNPO_INSTANTIATE(float)

@@ -1,4 +1,5 @@
-// Safetensors files: an 8-byte little-endian length, a JSON header, then the tensors' bytes. Readable by numpy and torch as they are.
+// Safetensors files: an 8-byte little-endian length, a JSON header, then the tensors' bytes. Readable by numpy and
+// torch as they are.
 #pragma once
 #include <cstdint>
 #include <map>
@@ -6,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
-#include "base/half.h"
 #include "base/files/io.h"
+#include "base/half.h"
 
 namespace synpo {
 

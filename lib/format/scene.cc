@@ -17,13 +17,10 @@ struct IntTensor {
   const char* name;
   std::vector<int32_t> Scene::*member;
 };
-constexpr IntTensor kIntTensors[] = {{"next", &Scene::next},
-                                     {"object_distance", &Scene::object_distance},
-                                     {"objects", &Scene::objects},
-                                     {"poses", &Scene::poses},
-                                     {"receptacle_distance", &Scene::receptacle_distance},
-                                     {"starts", &Scene::starts},
-                                     {"view", &Scene::view}};
+constexpr IntTensor kIntTensors[] = {
+    {"next", &Scene::next},   {"object_distance", &Scene::object_distance},         {"objects", &Scene::objects},
+    {"poses", &Scene::poses}, {"receptacle_distance", &Scene::receptacle_distance}, {"starts", &Scene::starts},
+    {"view", &Scene::view}};
 constexpr char kFeatures[] = "features";
 
 std::string text_of(const std::vector<int64_t>& numbers) {
@@ -43,9 +40,11 @@ const Tensor& tensor_of(const SafeTensors& file, const std::string& name) {
 }
 
 // The first extent of a tensor that is [N, rest...] with N from 1 to `limit`.
-int64_t rows_of(const SafeTensors& file, const std::string& name, const char* letter, const std::vector<int64_t>& rest, int64_t limit) {
+int64_t rows_of(const SafeTensors& file, const std::string& name, const char* letter, const std::vector<int64_t>& rest,
+                int64_t limit) {
   const Tensor& tensor = tensor_of(file, name);
-  const bool fits = tensor.shape.size() == rest.size() + 1 && std::equal(rest.begin(), rest.end(), tensor.shape.begin() + 1);
+  const bool fits =
+      tensor.shape.size() == rest.size() + 1 && std::equal(rest.begin(), rest.end(), tensor.shape.begin() + 1);
   if (!fits || tensor.shape[0] < 1 || tensor.shape[0] > limit) {
     std::string expected = std::string("[") + letter;
     for (const int64_t extent : rest) expected += ", " + std::to_string(extent);
@@ -55,7 +54,8 @@ int64_t rows_of(const SafeTensors& file, const std::string& name, const char* le
 }
 
 // A tensor of I32 within [low, high].
-std::vector<int32_t> integers(const SafeTensors& file, const std::string& name, const std::vector<int64_t>& shape, int32_t low, int32_t high) {
+std::vector<int32_t> integers(const SafeTensors& file, const std::string& name, const std::vector<int64_t>& shape,
+                              int32_t low, int32_t high) {
   const Tensor& tensor = tensor_of(file, name);
   if (tensor.shape != shape) bad_shape(name, tensor, text_of(shape));
   std::vector<int32_t> values = file.get<int32_t>(name);
@@ -63,8 +63,10 @@ std::vector<int32_t> integers(const SafeTensors& file, const std::string& name, 
     if (values[i] >= low && values[i] <= high) continue;
     std::vector<int64_t> at(shape.size());
     size_t rest = i;
-    for (size_t axis = shape.size(); axis-- > 0; rest /= size_t(shape[axis])) at[axis] = int64_t(rest % size_t(shape[axis]));
-    fail(Exit::kData, "tensor '", name, "': found ", values[i], " at ", text_of(at), ", expected a whole number from ", low, " to ", high);
+    for (size_t axis = shape.size(); axis-- > 0; rest /= size_t(shape[axis]))
+      at[axis] = int64_t(rest % size_t(shape[axis]));
+    fail(Exit::kData, "tensor '", name, "': found ", values[i], " at ", text_of(at), ", expected a whole number from ",
+         low, " to ", high);
   }
   return values;
 }
@@ -102,14 +104,18 @@ void take_features(SafeTensors& file, Scene& scene) {
     return std::isfinite(single);
   };
   for (size_t i = 0; i < size_t(rows) * kSceneFeatures; ++i)
-    if (!finite(i)) fail(Exit::kData, "tensor '", kFeatures, "': row ", i / kSceneFeatures, " holds a value that is not finite");
-  scene.view = integers(file, "view", {int64_t(scene.layout_count()), kSceneDoors, int64_t(scene.pose_count()), kSceneObjects + 1}, -1, int32_t(rows - 1));
+    if (!finite(i))
+      fail(Exit::kData, "tensor '", kFeatures, "': row ", i / kSceneFeatures, " holds a value that is not finite");
+  scene.view = integers(file, "view",
+                        {int64_t(scene.layout_count()), kSceneDoors, int64_t(scene.pose_count()), kSceneObjects + 1},
+                        -1, int32_t(rows - 1));
 }
 
 Scene scene_in(SafeTensors& file) {
   if (file.metadata.count("format") == 0 || file.meta("format") != kFormat) fail(Exit::kData, "not a synpo scene");
   const int version = whole(file, "version");
-  if (version < 1 || version > kSceneVersion) fail(Exit::kData, "version ", version, ", this build reads 1 to ", kSceneVersion);
+  if (version < 1 || version > kSceneVersion)
+    fail(Exit::kData, "version ", version, ", this build reads 1 to ", kSceneVersion);
   Scene scene;
   scene.env = name_in(file, "env");
   scene.rules = whole(file, "rules");
@@ -123,8 +129,10 @@ Scene scene_in(SafeTensors& file) {
     fail(Exit::kData, "tensor 'starts': found numbers that do not rise, expected each once, ascending");
   scene.next = integers(file, "next", {poses, kSceneMoves}, 0, int32_t(poses - 1));
   scene.objects = integers(file, "objects", {layouts, kSceneObjects, 2}, INT16_MIN, INT16_MAX);
-  scene.object_distance = integers(file, "object_distance", {layouts, kSceneDoors, poses, kSceneObjects}, -1, UINT16_MAX);
-  scene.receptacle_distance = integers(file, "receptacle_distance", {layouts, kSceneDoors, poses, kSceneReceptacles}, -1, UINT16_MAX);
+  scene.object_distance =
+      integers(file, "object_distance", {layouts, kSceneDoors, poses, kSceneObjects}, -1, UINT16_MAX);
+  scene.receptacle_distance =
+      integers(file, "receptacle_distance", {layouts, kSceneDoors, poses, kSceneReceptacles}, -1, UINT16_MAX);
   take_features(file, scene);
   return scene;
 }
@@ -132,11 +140,21 @@ Scene scene_in(SafeTensors& file) {
 }  // namespace
 
 uint64_t Scene::hash() const {
-  const auto add = [](Hash& hash, const std::string& name, const void* data, size_t size) { hash.add(name).add(data, size); };
+  const auto add = [](Hash& hash, const std::string& name, const void* data, size_t size) {
+    hash.add(name).add(data, size);
+  };
   Hash hash;
-  hash.add("env").add(env).add("extractor").add(extractor).add("extractor_hash").add(hex(extractor_hash)).add("rules").add(std::to_string(rules));
+  hash.add("env")
+      .add(env)
+      .add("extractor")
+      .add(extractor)
+      .add("extractor_hash")
+      .add(hex(extractor_hash))
+      .add("rules")
+      .add(std::to_string(rules));
   add(hash, kFeatures, features.data(), features.size());
-  for (const IntTensor& tensor : kIntTensors) add(hash, tensor.name, (this->*tensor.member).data(), (this->*tensor.member).size() * sizeof(int32_t));
+  for (const IntTensor& tensor : kIntTensors)
+    add(hash, tensor.name, (this->*tensor.member).data(), (this->*tensor.member).size() * sizeof(int32_t));
   return hash.value();
 }
 
@@ -151,8 +169,12 @@ Scene read_scene(Input& input) {
 
 std::string format_scene(const Scene& scene) {
   SafeTensors file;
-  file.metadata = {{"format", kFormat},        {"version", std::to_string(kSceneVersion)}, {"env", scene.env}, {"rules", std::to_string(scene.rules)},
-                   {"extractor", scene.extractor}, {"extractor_hash", hex(scene.extractor_hash)}};
+  file.metadata = {{"format", kFormat},
+                   {"version", std::to_string(kSceneVersion)},
+                   {"env", scene.env},
+                   {"rules", std::to_string(scene.rules)},
+                   {"extractor", scene.extractor},
+                   {"extractor_hash", hex(scene.extractor_hash)}};
   const int64_t poses = int64_t(scene.pose_count()), layouts = int64_t(scene.layout_count());
   const auto add = [&](const char* name, const std::vector<int64_t>& shape, const std::vector<int32_t>& values) {
     file.add(name, shape, values.data(), values.size());
@@ -165,7 +187,9 @@ std::string format_scene(const Scene& scene) {
   add("receptacle_distance", {layouts, kSceneDoors, poses, kSceneReceptacles}, scene.receptacle_distance);
   add("view", {layouts, kSceneDoors, poses, kSceneObjects + 1}, scene.view);
   const int64_t row = kSceneFeatures * int64_t(scene.halves ? sizeof(Half) : sizeof(float));
-  file.tensors[kFeatures] = {scene.halves ? TensorType::kF16 : TensorType::kF32, {int64_t(scene.features.size()) / row, kSceneFeatures}, scene.features};
+  file.tensors[kFeatures] = {scene.halves ? TensorType::kF16 : TensorType::kF32,
+                             {int64_t(scene.features.size()) / row, kSceneFeatures},
+                             scene.features};
   return format_safetensors(file);
 }
 

@@ -21,7 +21,8 @@ const Json& need(const Json& object, const char* field) {
 }
 
 [[noreturn]] void wrong(const char* field, const Json& found, const std::string& expected) {
-  fail(Exit::kData, "field '", field, "': found ", quoted(found.dump(-1, ' ', false, Json::error_handler_t::replace)), ", expected ", expected);
+  fail(Exit::kData, "field '", field, "': found ", quoted(found.dump(-1, ' ', false, Json::error_handler_t::replace)),
+       ", expected ", expected);
 }
 
 std::string text(const Json& object, const char* field) {
@@ -31,7 +32,8 @@ std::string text(const Json& object, const char* field) {
 }
 
 int64_t whole(const char* field, const Json& value, int64_t low, int64_t high) {
-  const bool fits = value.is_number_unsigned() ? value.get<uint64_t>() <= uint64_t(INT64_MAX) : value.is_number_integer();
+  const bool fits =
+      value.is_number_unsigned() ? value.get<uint64_t>() <= uint64_t(INT64_MAX) : value.is_number_integer();
   if (!fits || value.get<int64_t>() < low || value.get<int64_t>() > high)
     wrong(field, value, concat("a whole number from ", low, " to ", high));
   return value.get<int64_t>();
@@ -95,10 +97,12 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
         return true;
       },
       false);
-  if (object.is_discarded() || !object.is_object()) fail(Exit::kData, "found ", quoted(line), ", expected a JSON object");
+  if (object.is_discarded() || !object.is_object())
+    fail(Exit::kData, "found ", quoted(line), ", expected a JSON object");
   if (text(object, "format") != kFormat) wrong("format", object["format"], kFormat);
   const int64_t version = whole("version", need(object, "version"), 0, INT32_MAX);
-  if (version < 1 || version > kTrajectoryVersion) fail(Exit::kData, "version ", version, ", this build reads 1 to ", kTrajectoryVersion);
+  if (version < 1 || version > kTrajectoryVersion)
+    fail(Exit::kData, "version ", version, ", this build reads 1 to ", kTrajectoryVersion);
   Trajectory t;
   t.world = text(object, "world");
   t.rules = int(whole("rules", need(object, "rules"), 0, INT32_MAX));
@@ -114,18 +118,21 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
   if (!start.is_object() || start.size() > 64) wrong("start", start, "an object of places");
   for (const auto& [name, place] : start.items()) {
     if (!place.is_array() || place.size() != 2) wrong("start", place, "[row, column]");
-    t.start[name] = {int(whole("start", place[0], -kPlaceLimit, kPlaceLimit)), int(whole("start", place[1], -kPlaceLimit, kPlaceLimit))};
+    t.start[name] = {int(whole("start", place[0], -kPlaceLimit, kPlaceLimit)),
+                     int(whole("start", place[1], -kPlaceLimit, kPlaceLimit))};
   }
   t.actions = action_list(need(object, "actions"), "actions", step_limit);
   if (object.contains("labels")) t.labels = action_list(object["labels"], "labels", step_limit);
   if (!t.labels.empty() && t.labels.size() != t.actions.size())
     fail(Exit::kData, "found ", t.labels.size(), " labels for ", t.actions.size(), " actions");
   const Json& rewards = need(object, "rewards");
-  if (!rewards.is_array() || rewards.size() != t.actions.size()) wrong("rewards", rewards, concat("an array of ", t.actions.size(), " rewards"));
+  if (!rewards.is_array() || rewards.size() != t.actions.size())
+    wrong("rewards", rewards, concat("an array of ", t.actions.size(), " rewards"));
   t.reward_cents.reserve(rewards.size());
   for (const Json& reward : rewards) {
     const double cents = reward.is_number() ? reward.get<double>() * 100 : NAN;
-    if (!(std::abs(cents) < 1e6) || std::abs(cents - std::round(cents)) > 1e-3) wrong("rewards", reward, "a multiple of 0.01");
+    if (!(std::abs(cents) < 1e6) || std::abs(cents - std::round(cents)) > 1e-3)
+      wrong("rewards", reward, "a multiple of 0.01");
     t.reward_cents.push_back(int(std::lround(cents)));
   }
   t.success = truth(object, "success");

@@ -29,7 +29,8 @@ TsvReader::TsvReader(Input& input) : input_(input) {
     if (columns_[i].starts_with("\xef\xbb\xbf"))
       fail(Exit::kData, where, "found a byte order mark, expected plain UTF-8 without one");
     if (columns_[i].empty()) fail(Exit::kData, where, "found an empty name, expected the name of a column");
-    if (!names.insert(columns_[i]).second) fail(Exit::kData, where, "the name ", quoted(columns_[i]), " stands there twice");
+    if (!names.insert(columns_[i]).second)
+      fail(Exit::kData, where, "the name ", quoted(columns_[i]), " stands there twice");
   }
 }
 
@@ -54,7 +55,8 @@ bool TsvReader::row(std::vector<std::string>& fields) {
   const uint64_t begin_of_line = input_.offset();
   if (!input_.line(line)) return false;
   // A number that was cut off may still be a number.
-  if (input_.offset() - begin_of_line == line.size()) input_.bad_line("found no line end, expected LF: was the file cut off?");
+  if (input_.offset() - begin_of_line == line.size())
+    input_.bad_line("found no line end, expected LF: was the file cut off?");
   const bool header = &fields == &columns_;
   if (line.ends_with('\r'))
     input_.bad_line("ends in CR LF, expected LF alone: take the CRs out first, for instance with tr -d '\\r'");
@@ -67,7 +69,8 @@ bool TsvReader::row(std::vector<std::string>& fields) {
          name_bad_byte(uint8_t(line[bad])), ", expected UTF-8 text");
   }
   if (!header && count != columns_.size()) {
-    if (line.empty()) input_.bad_line(concat("found an empty line, expected ", columns_.size(), " fields as in the header"));
+    if (line.empty())
+      input_.bad_line(concat("found an empty line, expected ", columns_.size(), " fields as in the header"));
     input_.bad_line(concat("found ", count, count == 1 ? " field" : " fields", ", expected ", columns_.size(),
                            " as in the header (fields are separated by one tab each)"));
   }
@@ -95,8 +98,8 @@ double TsvReader::real(int column) const {
 }
 
 void TsvReader::bad(int column, const std::string& expected) const {
-  fail(Exit::kData, input_.name(), ": line ", line(), ", column ", column + 1, " (", quoted(columns_[column]), "): found ",
-       quoted(fields_[column]), ", expected ", expected);
+  fail(Exit::kData, input_.name(), ": line ", line(), ", column ", column + 1, " (", quoted(columns_[column]),
+       "): found ", quoted(fields_[column]), ", expected ", expected);
 }
 
 void TsvWriter::separate() {

@@ -14,8 +14,8 @@ constexpr int kTsvColumns = 1000;  // a table with more columns is refused
 // Reads a table row by row. Every message names the input, the line and the column.
 class TsvReader {
  public:
-  // Reads the header. Throws kData for an empty input, a repeated or empty column name, more than kTsvColumns columns, and,
-  // here as in every row, for CR LF line ends, a last line without LF, control characters or invalid UTF-8.
+  // Reads the header. Throws kData for an empty input, a repeated or empty column name, more than kTsvColumns columns,
+  // and, here as in every row, for CR LF line ends, a last line without LF, control characters or invalid UTF-8.
   explicit TsvReader(Input& input);
 
   const std::vector<std::string>& columns() const { return columns_; }

@@ -2,15 +2,17 @@
 //
 // A one-dimensional correlation of kIn inputs with three taps w to kOut outputs is written as
 //     y = Out ((Weight w) * (In x)),        * element by element, kProducts products,
-// and in two dimensions each map is applied along rows, then along columns: kProducts^2 products for kOut^2 outputs, each of which
-// is a matrix product over channels. Gradients use the transposed maps (the form is bilinear):
+// and in two dimensions each map is applied along rows, then along columns: kProducts^2 products for kOut^2 outputs,
+// each of which is a matrix product over channels. Gradients use the transposed maps (the form is bilinear):
 //     dx = In^T ((Weight w) * (Out^T dy)),   dw = Weight^T ((In x) * (Out^T dy)).
 //
-// Winograd43: Toom-Cook interpolation at 0, 1, -1, 2, -2 and infinity (Winograd's F(4,3)): 6 products for 4 outputs, where the
-// direct form takes 12.
+// Winograd43: Toom-Cook interpolation at 0, 1, -1, 2, -2 and infinity (Winograd's F(4,3)): 6 products for 4 outputs,
+// where the direct form takes 12.
 //
-// Toeplitz2: two pixels with zeros on both sides, y0 = w1 x0 + w2 x1, y1 = w0 x0 + w1 x1. The matrix has equal diagonals, hence
-//     y0 = w1 (x0 + x1) + (w2 - w1) x1,   y1 = w1 (x0 + x1) + (w0 - w1) x0:    3 products, where the direct form takes 6.
+// Toeplitz2: two pixels with zeros on both sides, y0 = w1 x0 + w2 x1, y1 = w0 x0 + w1 x1. The matrix has equal
+// diagonals, hence
+//     y0 = w1 (x0 + x1) + (w2 - w1) x1,   y1 = w1 (x0 + x1) + (w0 - w1) x0:    3 products, where the direct form
+//     takes 6.
 #pragma once
 
 namespace synpo {

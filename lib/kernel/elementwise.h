@@ -38,8 +38,8 @@ struct Rows {
     });
   }
 
-  static void norm_add_relu(size_t rows, int channels, const T* z, const T* scale, const T* offset, const T* other, const T* other_scale,
-                            const T* other_offset, T* y) {
+  static void norm_add_relu(size_t rows, int channels, const T* z, const T* scale, const T* offset, const T* other,
+                            const T* other_scale, const T* other_offset, T* y) {
     if (other_scale)
       for_rows(rows, channels, [=](auto tag, size_t at, int c) {
         using V = decltype(tag);
@@ -57,7 +57,8 @@ struct Rows {
     for (size_t i = 0; i < count; ++i) d[i] = y[i] > 0 ? d[i] : T(0);
   }
 
-  static void add_products(size_t rows, int channels, const T* d, const T* z, const T* mean, double* sum, double* products) {
+  static void add_products(size_t rows, int channels, const T* d, const T* z, const T* mean, double* sum,
+                           double* products) {
     add_sums(rows, channels, sum, products, [=](auto tag, size_t at, int c, auto& s, auto& p) {
       using V = decltype(tag);
       const V value = load<V>(d + at);
@@ -66,8 +67,8 @@ struct Rows {
     });
   }
 
-  static void add_masked_products(size_t rows, int channels, const T* d, const T* z, const T* mean, const T* scale, const T* offset,
-                                  double* sum, double* products) {
+  static void add_masked_products(size_t rows, int channels, const T* d, const T* z, const T* mean, const T* scale,
+                                  const T* offset, double* sum, double* products) {
     add_sums(rows, channels, sum, products, [=](auto tag, size_t at, int c, auto& s, auto& p) {
       using V = decltype(tag);
       const V value = masked<V>(d + at, z + at, scale + c, offset + c);
@@ -76,8 +77,8 @@ struct Rows {
     });
   }
 
-  static void norm_backward(size_t rows, int channels, const T* d, const T* z, const T* from_d, const T* from_z, const T* constant,
-                            const T* scale, const T* offset, T* dz) {
+  static void norm_backward(size_t rows, int channels, const T* d, const T* z, const T* from_d, const T* from_z,
+                            const T* constant, const T* scale, const T* offset, T* dz) {
     const auto apply = [=](auto tag, const auto& value, size_t at, int c) {
       using V = decltype(tag);
       store(dz + at, V(value * load<V>(from_d + c) + (load<V>(z + at) * load<V>(from_z + c) + load<V>(constant + c))));
@@ -100,8 +101,8 @@ struct Rows {
     });
   }
 
-  // In as many sums as the widest target has lanes of floats, what is left over beside zeros, so that all with fused products come to the same
-  // bits.
+  // In as many sums as the widest target has lanes of floats, what is left over beside zeros, so that all with fused
+  // products come to the same bits.
   static T dot(int n, const T* a, const T* b) {
     constexpr int kSums = 16;
     typedef T Sums __attribute__((vector_size(kSums * sizeof(T))));
@@ -174,11 +175,12 @@ struct Rows {
   // Calls body(tag, place, channel) for every vector of every row.
   template <class Body>
   static void for_rows(size_t rows, int channels, Body&& body) {
-    for (size_t row = 0; row < rows; ++row) for_lanes<T>(channels, [&](auto tag, int c) { body(tag, row * channels + c, c); });
+    for (size_t row = 0; row < rows; ++row)
+      for_lanes<T>(channels, [&](auto tag, int c) { body(tag, row * channels + c, c); });
   }
 
-  // Sums of two quantities over rows, per channel: body(tag, place, channel, first, second) adds one row's. Within blocks of 64 rows the sums
-  // are taken in T, from block to block in double.
+  // Sums of two quantities over rows, per channel: body(tag, place, channel, first, second) adds one row's. Within
+  // blocks of 64 rows the sums are taken in T, from block to block in double.
   template <class Body>
   static void add_sums(size_t rows, int channels, double* first, double* second, Body&& body) {
     constexpr size_t kBlock = 64;

@@ -1,17 +1,18 @@
 // The matrix product of floats in AMX tiles. Part of target.cc.
 //
-// A tile instruction multiplies bf16 (8 significant bits, rounded to within 2^-8) and adds up in float. Every factor is split into two,
-// x = hi + lo, hi the nearest bf16 of x and lo the nearest bf16 of x - hi, which leaves an error of at most 2^-16 |x|. Of the four products
-// three are taken:
+// A tile instruction multiplies bf16 (8 significant bits, rounded to within 2^-8) and adds up in float. Every factor is
+// split into two, x = hi + lo, hi the nearest bf16 of x and lo the nearest bf16 of x - hi, which leaves an error of at
+// most 2^-16 |x|. Of the four products three are taken:
 //     a b ~ a_hi b_hi + a_hi b_lo + a_lo b_hi,
-// what is left out is at most 2^-16 |a b|. A product's relative error is thus below 2^-14 (three errors of 2^-16, and what they make of one
-// another), a twentieth of that on average; sums are taken in float.
+// what is left out is at most 2^-16 |a b|. A product's relative error is thus below 2^-14 (three errors of 2^-16, and
+// what they make of one another), a twentieth of that on average; sums are taken in float.
 //
-// C is computed in squares of 32 x 32: two by two tiles. Both factors lie in blocks of 32 of the inner index, each block four tiles: hi of
-// the first 16 rows (of A; columns of B), hi of the other 16, lo of the first, lo of the others. A tile's values lie in pairs, which the
-// instruction adds up first; ours are 16 apart in the inner index, which takes one shift and one blend to make. A tile of A is 16 rows of the pairs
-// (p, p + 16), one of B is 16 rows, rows p and p + 16 of 16 columns in pairs. B is packed so for panels of 32 columns, within blocks of
-// kDepth rows; A is split on the way, 32 rows by kDepth at a time.
+// C is computed in squares of 32 x 32: two by two tiles. Both factors lie in blocks of 32 of the inner index, each
+// block four tiles: hi of the first 16 rows (of A; columns of B), hi of the other 16, lo of the first, lo of the
+// others. A tile's values lie in pairs, which the instruction adds up first; ours are 16 apart in the inner index,
+// which takes one shift and one blend to make. A tile of A is 16 rows of the pairs (p, p + 16), one of B is 16 rows,
+// rows p and p + 16 of 16 columns in pairs. B is packed so for panels of 32 columns, within blocks of kDepth rows; A is
+// split on the way, 32 rows by kDepth at a time.
 #pragma once
 #include <immintrin.h>
 
@@ -21,14 +22,16 @@
 namespace synpo::SYNPO_TARGET {
 
 struct AmxProduct {
-  static constexpr int kSide = 32;                    // of the squares of C, and of the blocks of the inner index
-  static constexpr int kTile = 16 * 32;               // bf16 values of a tile
-  static constexpr int kBlock = 4 * kTile;            // and of a block
+  static constexpr int kSide = 32;          // of the squares of C, and of the blocks of the inner index
+  static constexpr int kTile = 16 * 32;     // bf16 values of a tile
+  static constexpr int kBlock = 4 * kTile;  // and of a block
   static constexpr int kDepth = kPackedRows;
   using Half = unsigned short;
 
   static int round_up(int n) { return (n + kSide - 1) / kSide * kSide; }
-  static size_t packed_size(int k, int n) { return size_t(round_up(k)) * round_up(n); }  // two halves are as long as one float
+  static size_t packed_size(int k, int n) {
+    return size_t(round_up(k)) * round_up(n);
+  }  // two halves are as long as one float
 
   static void pack(Op op, int k, int n, const float* b, int ldb, float* packed) {
     Half* to = reinterpret_cast<Half*>(packed);
@@ -47,7 +50,8 @@ struct AmxProduct {
     }
   }
 
-  static void multiply(Op op, int m, int n, int k, const float* a, int lda, const float* packed, float* c, int ldc, bool accumulate) {
+  static void multiply(Op op, int m, int n, int k, const float* a, int lda, const float* packed, float* c, int ldc,
+                       bool accumulate) {
     if (k == 0) return Product<float>::multiply(op, m, n, k, a, lda, packed, c, ldc, accumulate);
     configure();
     alignas(64) Half left[kDepth / kSide * kBlock];
@@ -66,18 +70,20 @@ struct AmxProduct {
               split<Pairs::kOfRows, true>(a + size_t(p) * lda + row, lda, k - p, m - row, hi, hi + 2 * kTile);
           }
         for (int first = 0; first < n; first += kSide)
-          (tall ? square<true> : square<false>)(blocks, left, right + size_t(first / kSide) * blocks * kBlock, smaller(kSide, m - i),
-                                                smaller(kSide, n - first), c + size_t(i) * ldc + first, ldc, accumulate || begin > 0);
+          (tall ? square<true> : square<false>)(blocks, left, right + size_t(first / kSide) * blocks * kBlock,
+                                                smaller(kSide, m - i), smaller(kSide, n - first),
+                                                c + size_t(i) * ldc + first, ldc, accumulate || begin > 0);
       }
       right += size_t(round_up(n) / kSide) * blocks * kBlock;
     }
   }
 
  private:
-  // Square [rows, columns] of C += left right, over `blocks` blocks. Tiles 0 to 3 are C's, 4 and 5 A's, 6 and 7 B's; without kTall, for at most
-  // 16 rows, 2, 3 and 5 are left alone.
+  // Square [rows, columns] of C += left right, over `blocks` blocks. Tiles 0 to 3 are C's, 4 and 5 A's, 6 and 7 B's;
+  // without kTall, for at most 16 rows, 2, 3 and 5 are left alone.
   template <bool kTall>
-  static void square(int blocks, const Half* left, const Half* right, int rows, int columns, float* c, int ldc, bool accumulate) {
+  static void square(int blocks, const Half* left, const Half* right, int rows, int columns, float* c, int ldc,
+                     bool accumulate) {
     alignas(64) float edge[kSide * kSide];
     const bool whole = rows == (kTall ? kSide : 16) && columns == kSide;
     float* to = whole ? c : edge;
@@ -150,8 +156,8 @@ struct AmxProduct {
   // A tile's pairs are 16 apart in the inner index: rows r and r + 16 of what lies in memory (kOfRows), or columns.
   enum class Pairs { kOfRows, kOfColumns };
 
-  // Splits what lies at `from`, 32 x 16 (pairs of rows) or 16 x 32 (pairs of columns), zero beyond rows and columns, into two tiles;
-  // kFlip exchanges the tile's rows and columns, pairs staying pairs.
+  // Splits what lies at `from`, 32 x 16 (pairs of rows) or 16 x 32 (pairs of columns), zero beyond rows and columns,
+  // into two tiles; kFlip exchanges the tile's rows and columns, pairs staying pairs.
   template <Pairs pairs, bool kFlip>
   static void split(const float* from, int ld, int rows, int columns, Half* hi, Half* lo) {
     constexpr bool kOfRows = pairs == Pairs::kOfRows;
@@ -160,7 +166,8 @@ struct AmxProduct {
     } else {
       alignas(64) float whole[32 * 16];
       for (int i = 0; i < 32; ++i) {
-        const int row = kOfRows ? i : i % 16, column = kOfRows ? 0 : i / 16 * 16, count = row < rows ? columns - column : 0;
+        const int row = kOfRows ? i : i % 16, column = kOfRows ? 0 : i / 16 * 16,
+                  count = row < rows ? columns - column : 0;
         const __mmask16 mask = count >= 16 ? 0xffff : count > 0 ? (1u << count) - 1 : 0;
         _mm512_store_ps(whole + 16 * i, _mm512_maskz_loadu_ps(mask, from + size_t(row) * ld + column));
       }
@@ -168,7 +175,8 @@ struct AmxProduct {
     }
   }
 
-  // The same of 16 x 16 values at `first` and their partners at `second`, both with rows `ld` apart. What lies `ahead` of them will be wanted soon.
+  // The same of 16 x 16 values at `first` and their partners at `second`, both with rows `ld` apart. What lies `ahead`
+  // of them will be wanted soon.
   template <bool kFlip>
   static void split_tile(const float* first, size_t ld, const float* second, size_t ahead, Half* hi, Half* lo) {
     __m512i h[16], l[16];
@@ -194,7 +202,9 @@ struct AmxProduct {
 
   // To the nearest bf16, in the upper halves; what the lower ones hold does not count.
   static __m512i rounded(__m512 x) { return _mm512_add_epi32(_mm512_castps_si512(x), _mm512_set1_epi32(0x8000)); }
-  static __m512 as_float(__m512i half) { return _mm512_castsi512_ps(_mm512_and_si512(half, _mm512_set1_epi32(int(0xffff0000)))); }
+  static __m512 as_float(__m512i half) {
+    return _mm512_castsi512_ps(_mm512_and_si512(half, _mm512_set1_epi32(int(0xffff0000))));
+  }
 
   // Pairs of their upper halves.
   static __m512i upper_halves(__m512i first, __m512i second) {
@@ -206,7 +216,8 @@ struct AmxProduct {
     __m512i t[16];
     for (int i = 0; i < 16; i += 4) {
       const __m512i a = _mm512_unpacklo_epi32(rows[i], rows[i + 1]), b = _mm512_unpackhi_epi32(rows[i], rows[i + 1]);
-      const __m512i c = _mm512_unpacklo_epi32(rows[i + 2], rows[i + 3]), d = _mm512_unpackhi_epi32(rows[i + 2], rows[i + 3]);
+      const __m512i c = _mm512_unpacklo_epi32(rows[i + 2], rows[i + 3]),
+                    d = _mm512_unpackhi_epi32(rows[i + 2], rows[i + 3]);
       t[i] = _mm512_unpacklo_epi64(a, c);
       t[i + 1] = _mm512_unpackhi_epi64(a, c);
       t[i + 2] = _mm512_unpacklo_epi64(b, d);

@@ -9,9 +9,9 @@
 #include <unistd.h>
 #endif
 
-#define SYNPO_DECLARE(target)                 \
-  namespace synpo::target {                   \
-  extern const Kernels<float> kFloatKernels;  \
+#define SYNPO_DECLARE(target)                  \
+  namespace synpo::target {                    \
+  extern const Kernels<float> kFloatKernels;   \
   extern const Kernels<double> kDoubleKernels; \
   }
 SYNPO_DECLARE(plain)
@@ -29,8 +29,8 @@ namespace {
 bool has_avx2() { return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"); }
 
 bool has_avx512() {
-  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-         __builtin_cpu_supports("avx512vl");
+  return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+         __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 }
 
 // The processor must have the tiles, and the system must let this process use them: their registers are large to save.
@@ -57,11 +57,11 @@ struct Target {
 // From plain to best.
 const std::vector<Target>& targets() {
   static const std::vector<Target> all = {
-      {"plain", true, &plain::kFloatKernels, &plain::kDoubleKernels},
+    {"plain", true, &plain::kFloatKernels, &plain::kDoubleKernels},
 #if defined(__x86_64__)
-      {"avx2", has_avx2(), &avx2::kFloatKernels, &avx2::kDoubleKernels},
-      {"avx512", has_avx512(), &avx512::kFloatKernels, &avx512::kDoubleKernels},
-      {"amx", has_amx(), &amx::kFloatKernels, &amx::kDoubleKernels},
+    {"avx2", has_avx2(), &avx2::kFloatKernels, &avx2::kDoubleKernels},
+    {"avx512", has_avx512(), &avx512::kFloatKernels, &avx512::kDoubleKernels},
+    {"amx", has_amx(), &amx::kFloatKernels, &amx::kDoubleKernels},
 #endif
   };
   return all;

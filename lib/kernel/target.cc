@@ -1,11 +1,12 @@
-// The kernels of one target: compiled once for each, with SYNPO_TARGET its name and the compiler's options for its instructions (Makefile).
+// The kernels of one target: compiled once for each, with SYNPO_TARGET its name and the compiler's options for its
+// instructions (Makefile).
 //
-// A linker keeps one copy of an inline function that several objects bring. Code compiled for one processor must therefore not leave here
-// under a name that another could use: everything stands in the target's own namespace, and nothing with code of its own is included.
-// scripts/check looks at what the objects export.
+// A linker keeps one copy of an inline function that several objects bring. Code compiled for one processor must
+// therefore not leave here under a name that another could use: everything stands in the target's own namespace, and
+// nothing with code of its own is included. scripts/check looks at what the objects export.
+#include "kernel/elementwise.h"
 #include "kernel/kernels.h"
 #include "kernel/product.h"
-#include "kernel/elementwise.h"
 #include "kernel/transform.h"
 #ifdef __AMX_BF16__
 #include "kernel/product_amx.h"

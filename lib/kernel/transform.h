@@ -104,7 +104,8 @@ struct Tiles {
         transform_2d<A::kOutput>(factors, pixels);
         T* to = y + picture + c;
         for (int i = 0; i < A::kOut; ++i)
-          for (int j = 0; j < A::kOut; ++j) store(to + (size_t(row + i) * s.side + column + j) * s.channels, pixels[i * A::kOut + j]);
+          for (int j = 0; j < A::kOut; ++j)
+            store(to + (size_t(row + i) * s.side + column + j) * s.channels, pixels[i * A::kOut + j]);
       });
     });
   }

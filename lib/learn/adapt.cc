@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "base/take_rows.h"
-#include "play/running_episode.h"
 #include "nn/init.h"
+#include "play/running_episode.h"
 
 namespace synpo {
 namespace {
@@ -27,7 +27,9 @@ bool starts_with_any(const std::string& name, std::initializer_list<const char*>
 
 Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed) {
   if (const BatchNeeds needs = model.policy->needs(); needs.next || needs.planner_q)
-    fail(Exit::kUsage, "the loss that the policy was trained with needs more than demonstrations hold (sf: --sf-loss ce can be adapted)");
+    fail(Exit::kUsage,
+         "the loss that the policy was trained with needs more than demonstrations hold (sf: --sf-loss ce can be "
+         "adapted)");
   Model wide;
   wide.method = model.method;
   wide.shape = model.shape;
@@ -57,7 +59,8 @@ Model widen(const Model& model, const World& from, const World& world, double em
   const TensorInfo &envs = table(*wide.policy, "embedding.env"), &tasks = table(*wide.policy, "embedding.task");
   for (const TensorInfo& tensor : after.tensors())
     if (tensor.name != envs.name)
-      std::copy_n(model.parameters.data() + before.find(tensor.name)->offset, tensor.size, wide.parameters.data() + tensor.offset);
+      std::copy_n(model.parameters.data() + before.find(tensor.name)->offset, tensor.size,
+                  wide.parameters.data() + tensor.offset);
   const int width = wide.shape.embedding;
   for (int env = 0; env < from.envs(); ++env)
     std::copy_n(model.parameters.data() + before.find(envs.name)->offset + size_t(env) * width, width,
@@ -79,8 +82,8 @@ Model widen(const Model& model, const World& from, const World& world, double em
 }
 
 Adaptation::Adaptation(const World& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed)
-    : world_(world), parallel_(parallel), model_(std::move(model)), options_(options), seed_(seed), new_env_(world.envs(), true),
-      new_task_(world.task_count(), true) {
+    : world_(world), parallel_(parallel), model_(std::move(model)), options_(options), seed_(seed),
+      new_env_(world.envs(), true), new_task_(world.task_count(), true) {
   for (const EnvTask& pair : model_.seen) new_env_[pair.env] = new_task_[pair.task] = false;
   learned_ = learned();
   for (Buffer<float>* buffer : {&gradient_, &first_moment_, &second_moment_}) {
@@ -108,7 +111,8 @@ std::vector<Adaptation::Span> Adaptation::learned() const {
   add_rows(table(*model_.policy, "embedding.env"), new_env_);
   add_rows(table(*model_.policy, "embedding.task"), new_task_);
   for (const TensorInfo& tensor : model_.policy->parameters().tensors())
-    if ((options_.targets.heads && starts_with_any(tensor.name, {"theta", "phi", "policy.", "reward.", "f_env.", "f_task."})) ||
+    if ((options_.targets.heads &&
+         starts_with_any(tensor.name, {"theta", "phi", "policy.", "reward.", "f_env.", "f_task."})) ||
         (options_.targets.coefficients && starts_with_any(tensor.name, {"alpha.", "beta."})))
       spans.push_back({tensor.offset, tensor.size});
   return spans;
@@ -121,7 +125,8 @@ void Adaptation::add(const Episode& episode) {
   running.start(episode.pair, episode.start);
   for (size_t t = 0; t < episode.actions.size(); ++t) {
     observations_.resize(observations_.size() + size);
-    world_.observe(episode.pair.env, running.history, model_.window, observations_.data() + observations_.size() - size);
+    world_.observe(episode.pair.env, running.history, model_.window,
+                   observations_.data() + observations_.size() - size);
     env_.push_back(episode.pair.env);
     task_.push_back(episode.pair.task);
     label_.push_back(episode.labels[t]);
@@ -141,7 +146,8 @@ void Adaptation::compute_features() {
     const size_t at = size_t(done) + range.begin;
     const std::vector<int> pair(range.size(), 0);
     std::vector<float> logits(size_t(range.size()) * world_.actions());
-    model_.policy->infer(thread, range.size(), observations_.data() + at * world_.observation_size(), pair.data(), logits.data(), psi_.data() + at * d);
+    model_.policy->infer(thread, range.size(), observations_.data() + at * world_.observation_size(), pair.data(),
+                         logits.data(), psi_.data() + at * d);
   });
 }
 
@@ -155,7 +161,11 @@ void Adaptation::extend_embedding_loss() {
   std::vector<EmbeddingLoss::Steps> episodes;
   for (size_t i = embedding_loss_->episodes(); i < demonstrations(); ++i) {
     const size_t at = first_[i];
-    episodes.push_back({{env_[at], task_[at]}, int(first_[i + 1] - at), psi_.data() + at * model_.shape.feature, label_.data() + at, taken_.data() + at,
+    episodes.push_back({{env_[at], task_[at]},
+                        int(first_[i + 1] - at),
+                        psi_.data() + at * model_.shape.feature,
+                        label_.data() + at,
+                        taken_.data() + at,
                         reward_.data() + at});
   }
   embedding_loss_->add(parallel_, episodes);
@@ -166,12 +176,14 @@ Losses Adaptation::through_head(const std::vector<size_t>& drawn) {
   for (const size_t episode : drawn)
     for (size_t row = first_[episode]; row < first_[episode + 1]; ++row) rows.push_back(row);
   const int n = int(rows.size());
-  const std::vector<int> env = gathered(env_, rows), task = gathered(task_, rows), label = gathered(label_, rows), taken = gathered(taken_, rows);
+  const std::vector<int> env = gathered(env_, rows), task = gathered(task_, rows), label = gathered(label_, rows),
+                         taken = gathered(taken_, rows);
   const std::vector<float> reward = gathered(reward_, rows), psi = gathered(psi_, rows, size_t(model_.shape.feature));
   logits_.resize(size_t(n) * world_.actions());
   StepBatch<float> batch = {n, nullptr, env.data(), task.data(), label.data(), taken.data(), reward.data()};
   batch.psi = psi.data();
-  return model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(), gradient_.data(), logits_.data());
+  return model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
+                             gradient_.data(), logits_.data());
 }
 
 Losses Adaptation::update() {
@@ -187,11 +199,13 @@ Losses Adaptation::update() {
   } else {
     losses = through_head(drawn);
   }
-  if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
+  if (!std::isfinite(losses.total))
+    fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
   ++updates_;
   for (const Span& span : learned_)
-    adam_step(parallel_, options_.adam, updates_, span.size, gradient_.data() + span.offset, model_.parameters.data() + span.offset,
-              first_moment_.data() + span.offset, second_moment_.data() + span.offset);
+    adam_step(parallel_, options_.adam, updates_, span.size, gradient_.data() + span.offset,
+              model_.parameters.data() + span.offset, first_moment_.data() + span.offset,
+              second_moment_.data() + span.offset);
   return losses;
 }
 

@@ -1,8 +1,8 @@
-// Adaptation to new environments and tasks (supplement, Section 5.4, settings 2 and 3): their embeddings are learned from a few
-// demonstrations, as in Algorithm 1, while all else stays as it is.
+// Adaptation to new environments and tasks (supplement, Section 5.4, settings 2 and 3): their embeddings are learned
+// from a few demonstrations, as in Algorithm 1, while all else stays as it is.
 //
-// New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi, and where embeddings alone are
-// learned, all that embedding_loss.h keeps.
+// New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi,
+// and where embeddings alone are learned, all that embedding_loss.h keeps.
 #pragma once
 #include <map>
 #include <optional>
@@ -11,8 +11,8 @@
 
 #include "base/parallel.h"
 #include "learn/embedding_loss.h"
-#include "play/model.h"
 #include "nn/adam.h"
+#include "play/model.h"
 
 namespace synpo {
 
@@ -28,13 +28,15 @@ struct AdaptOptions {
   LossWeights losses;
   double embedding_sd = 0;
   AdaptTargets targets;
-  // For what embedding_loss.h keeps. Where it is not enough, updates go through the whole head, which takes ten times as long.
+  // For what embedding_loss.h keeps. Where it is not enough, updates go through the whole head, which takes ten times
+  // as long.
   size_t memory_bytes = size_t(2) << 30;
 };
 
-// The same model for a world of more environments: parameters are carried over by environment and task; embeddings of what no seen pair has are
-// drawn anew from `seed`. Throws kData where an environment of the checkpoint is another one in `world`, kUsage for a method without embeddings of
-// environments and tasks, and for a loss that needs more than demonstrations hold.
+// The same model for a world of more environments: parameters are carried over by environment and task; embeddings of
+// what no seen pair has are drawn anew from `seed`. Throws kData where an environment of the checkpoint is another one
+// in `world`, kUsage for a method without embeddings of environments and tasks, and for a loss that needs more than
+// demonstrations hold.
 Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed);
 
 class Adaptation {

@@ -8,7 +8,8 @@
 
 namespace synpo {
 
-ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& options, int actions, const float* logits, float* dlogits) {
+ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& options, int actions,
+                                const float* logits, float* dlogits) {
   const int n = steps.n;
   std::vector<double> p(actions), log_p(actions);
   ClippedLosses losses;
@@ -20,7 +21,8 @@ ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& 
       log_p[j] = logits[j] - log_sum;
       entropy -= p[j] * log_p[j];
     }
-    const double log_ratio = log_p[a] - steps.log_probability[i], ratio = std::exp(log_ratio), advantage = steps.advantage[i];
+    const double log_ratio = log_p[a] - steps.log_probability[i], ratio = std::exp(log_ratio),
+                 advantage = steps.advantage[i];
     const double clipped = std::clamp(ratio, 1 - options.clip, 1 + options.clip);
     const bool limited = clipped * advantage < ratio * advantage;
     losses.policy -= (limited ? clipped : ratio) * advantage / n;

@@ -18,13 +18,15 @@ struct ClippingOptions {
   double clip = 0.1, entropy = 0.01;
 };
 
-// Means over the steps, `policy` being -objective, and the extremes of the ratio. kl is an estimate of KL(pi_old, pi): ratio - 1 - log ratio.
+// Means over the steps, `policy` being -objective, and the extremes of the ratio. kl is an estimate of KL(pi_old, pi):
+// ratio - 1 - log ratio.
 struct ClippedLosses {
   double policy = 0, entropy = 0, kl = 0, clip_fraction = 0, largest_ratio = 1, smallest_ratio = 1;
 };
 
 // dlogits [n, actions] = the loss's gradient.
-ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& options, int actions, const float* logits, float* dlogits);
+ClippedLosses clipped_objective(const ActedSteps& steps, const ClippingOptions& options, int actions,
+                                const float* logits, float* dlogits);
 
 // 1/2 mean (value - target)^2, both [n]; dvalue = its gradient.
 double value_loss(int n, const float* value, const float* target, float* dvalue);

@@ -32,13 +32,15 @@ std::vector<Packed<float>> action_matrices(const Model& model) {
   Layout layout;
   BilinearForm<float> form(shape.actions, shape.feature, shape.basis, shape.action_embedding, layout);
   std::vector<float> parameters(layout.total());
-  for (const TensorInfo& tensor : layout.tensors()) std::ranges::copy(values(model, tensor.name), parameters.begin() + tensor.offset);
+  for (const TensorInfo& tensor : layout.tensors())
+    std::ranges::copy(values(model, tensor.name), parameters.begin() + tensor.offset);
   std::vector<int> actions(shape.actions);
   std::iota(actions.begin(), actions.end(), 0);
   Parallel alone(1);
   form.use_actions(alone, actions, parameters.data());
   std::vector<Packed<float>> matrices(shape.actions);
-  for (const int a : actions) matrices[a].pack(Op::kAsIs, shape.feature, shape.basis, form.action_matrix(a, parameters.data()), shape.basis);
+  for (const int a : actions)
+    matrices[a].pack(Op::kAsIs, shape.feature, shape.basis, form.action_matrix(a, parameters.data()), shape.basis);
   return matrices;
 }
 
@@ -57,7 +59,8 @@ size_t EmbeddingLoss::step_bytes(const PolicyShape& shape) {
 }
 
 EmbeddingLoss::Kind::Kind(const Model& model, const std::string& name, const std::vector<bool>& is_new)
-    : at(find(model, "embedding." + name).offset), size(find(model, "embedding." + name).size), table(table_of(model.shape, int(is_new.size()))),
+    : at(find(model, "embedding." + name).offset), size(find(model, "embedding." + name).size),
+      table(table_of(model.shape, int(is_new.size()))),
       f("f_" + name, model.policy->parameters(), model.parameters.data()) {
   for (int row = 0; row < int(is_new.size()); ++row)
     if (is_new[row]) rows.push_back(row);
@@ -67,7 +70,8 @@ EmbeddingLoss::Kind::Kind(const Model& model, const std::string& name, const std
 
 EmbeddingLoss::EmbeddingLoss(const Model& model, const std::vector<bool>& new_env, const std::vector<bool>& new_task)
     : shape_(model.shape), kind_{{model, "env", new_env}, {model, "task", new_task}},
-      coefficient_{{"alpha", model.policy->parameters(), model.parameters.data()}, {"beta", model.policy->parameters(), model.parameters.data()}},
+      coefficient_{{"alpha", model.policy->parameters(), model.parameters.data()},
+                   {"beta", model.policy->parameters(), model.parameters.data()}},
       theta_(action_matrices(model)), bias_{values(model, "policy.bias"), values(model, "reward.bias")} {
   use_embeddings(model.parameters.data());
 }
@@ -89,7 +93,8 @@ void EmbeddingLoss::take_in(const Steps& steps, Episode& episode) const {
   float* x = episode.x.grow(size_t(n) * actions * basis);
   for (int a = 0; a < actions; ++a) gemm(Op::kAsIs, n, steps.psi, d, theta_[a], x + size_t(a) * basis, actions * basis);
   std::vector<float> at_label(size_t(n) * basis), hidden(size_t(n) * shape_.hidden);
-  for (int i = 0; i < n; ++i) std::copy_n(x + (size_t(i) * actions + steps.label[i]) * basis, basis, at_label.data() + size_t(i) * basis);
+  for (int i = 0; i < n; ++i)
+    std::copy_n(x + (size_t(i) * actions + steps.label[i]) * basis, basis, at_label.data() + size_t(i) * basis);
   for (const Which which : {kEnv, kTask}) {
     kind_[which].f.forward(n, at_label.data(), hidden.data(), episode.f[which].grow(size_t(n) * shape_.embedding));
     rate_old(which, episode);
@@ -104,7 +109,8 @@ void EmbeddingLoss::rate_old(Which which, Episode& episode) const {
     float true_score = 0;
     for (int row = 0; row < kind.table.count(); ++row) {
       if (!kind.is_old(row)) continue;
-      scores.push_back(kernels<float>().dot(shape_.embedding, episode.f[which].data() + size_t(i) * shape_.embedding, kind.table.row(row)));
+      scores.push_back(kernels<float>().dot(shape_.embedding, episode.f[which].data() + size_t(i) * shape_.embedding,
+                                            kind.table.row(row)));
       if (row == truth) true_score = scores.back();
     }
     const double old = log_sum_exp(scores);
@@ -163,7 +169,8 @@ void EmbeddingLoss::compose(Parallel& parallel) {
     const int h = shard / shards;
     const Range range = shard_range(pairs, kRows, shard % shards);
     const size_t at = range.begin;
-    coefficient_[h].forward(range.size(), input_.data() + at * in, hidden_[h].data() + at * hidden, coefficients_[h].data() + at * basis);
+    coefficient_[h].forward(range.size(), input_.data() + at * in, hidden_[h].data() + at * hidden,
+                            coefficients_[h].data() + at * basis);
     std::fill_n(dcoefficients_[h].data() + at * basis, size_t(range.size()) * basis, 0.0f);
   });
 }
@@ -176,8 +183,8 @@ void EmbeddingLoss::compose_backward(Parallel& parallel) {
     const size_t at = range.begin;
     std::vector<float> dhidden(size_t(range.size()) * hidden);
     for (int h = 0; h < kHeads; ++h)
-      coefficient_[h].backward(range.size(), hidden_[h].data() + at * hidden, dcoefficients_[h].data() + at * basis, dhidden.data(), dinput + at * in,
-                               h > 0);
+      coefficient_[h].backward(range.size(), hidden_[h].data() + at * hidden, dcoefficients_[h].data() + at * basis,
+                               dhidden.data(), dinput + at * in, h > 0);
   });
   const float* from = dinput;
   for (const int key : by_pair_.keys) {
@@ -222,9 +229,11 @@ void EmbeddingLoss::recognise(Which which, const Episode& episode, float each, d
   for (int i = 0; i < n; ++i) {
     float* row = scores.data() + size_t(i) * classes;
     row[fresh] = episode.old[which][i];
-    part.kind[which] += each * cross_entropy(row, classes, kind.place[episode.key[which]], float(weight * each), dscores.data() + size_t(i) * classes);
+    part.kind[which] += each * cross_entropy(row, classes, kind.place[episode.key[which]], float(weight * each),
+                                             dscores.data() + size_t(i) * classes);
   }
-  gemm(Op::kTransposed, Op::kAsIs, fresh, width, n, dscores.data(), classes, f, width, part.dembedding[which].data(), width, true);
+  gemm(Op::kTransposed, Op::kAsIs, fresh, width, n, dscores.data(), classes, f, width, part.dembedding[which].data(),
+       width, true);
 }
 
 // The losses, without weights, and the gradient.
@@ -249,8 +258,8 @@ Losses EmbeddingLoss::reduce(const std::vector<Part>& parts, const float* parame
   return losses;
 }
 
-Losses EmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights, const float* parameters,
-                           float* gradient) {
+Losses EmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights,
+                           const float* parameters, float* gradient) {
   const size_t steps = count_draws(drawn);
   use_embeddings(parameters);
   compose(parallel);
@@ -258,7 +267,8 @@ Losses EmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& drawn,
   std::vector<Part> parts(shard_count(pairs, kPairs));
   parallel.run(int(parts.size()), [&](int shard, int) {
     Part& part = parts[shard];
-    for (const Which which : {kEnv, kTask}) part.dembedding[which].assign(size_t(kind_[which].fresh()) * shape_.embedding, 0);
+    for (const Which which : {kEnv, kTask})
+      part.dembedding[which].assign(size_t(kind_[which].fresh()) * shape_.embedding, 0);
     const Range range = shard_range(pairs, kPairs, shard);
     for (int j = by_pair_.begin[range.begin]; j < by_pair_.begin[range.end]; ++j) {
       const int i = by_pair_.members[j];

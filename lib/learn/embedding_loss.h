@@ -1,15 +1,15 @@
 // The losses of Algorithm 1 as a function of new embeddings alone, where all else of SynPo stays as it is (adapt.h).
 //
-// What never changes is computed once for every demonstrated step: x(s, a) of all actions, f_env(x) and f_task(x) at the expert's action, and
-// log sum exp of what the old environments, and tasks, score. An update is left with
+// What never changes is computed once for every demonstrated step: x(s, a) of all actions, f_env(x) and f_task(x) at
+// the expert's action, and log sum exp of what the old environments, and tasks, score. An update is left with
 //   alpha(z) and beta(z) of the pairs drawn,   logits_a = alpha^T x(s, a) + b_a,   r = beta^T x(s, a) + c_a,
 // and f(x)^T e of the new e. An episode that is drawn several times is computed once, and weighs so many times as much.
 #pragma once
 #include <vector>
 
 #include "base/parallel.h"
-#include "play/model.h"
 #include "nn/layers/frozen_perceptron.h"
+#include "play/model.h"
 #include "policy/head/embedding_table.h"
 #include "policy/head/groups.h"
 
@@ -22,7 +22,8 @@ class EmbeddingLoss {
   // What is kept of a step, in bytes.
   static size_t step_bytes(const PolicyShape& shape);
 
-  // Rows of the embeddings that are marked as new are those to be learned; everything else of the model is taken as it is now.
+  // Rows of the embeddings that are marked as new are those to be learned; everything else of the model is taken as it
+  // is now.
   EmbeddingLoss(const Model& model, const std::vector<bool>& new_env, const std::vector<bool>& new_task);
 
   // An episode's steps: psi [size, d], the others [size].
@@ -38,9 +39,11 @@ class EmbeddingLoss {
   void add(Parallel& parallel, const std::vector<Steps>& episodes);
   size_t episodes() const { return episodes_.size(); }
 
-  // Means over the steps of the episodes drawn, each as often as it is. In `gradient`, laid out as the model's parameters, both tables of embeddings
-  // are overwritten, old rows with zero; the rest is left as it was. Bits do not depend on the number of threads.
-  Losses step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights, const float* parameters, float* gradient);
+  // Means over the steps of the episodes drawn, each as often as it is. In `gradient`, laid out as the model's
+  // parameters, both tables of embeddings are overwritten, old rows with zero; the rest is left as it was. Bits do not
+  // depend on the number of threads.
+  Losses step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights, const float* parameters,
+              float* gradient);
 
  private:
   enum Head { kPolicy, kReward, kHeads };
@@ -65,7 +68,7 @@ class EmbeddingLoss {
     Buffer<float> x;                 // [size, A, K]
     Buffer<float> f[kKinds];         // [size, E]
     std::vector<float> old[kKinds];  // [size], log sum exp of the old ones' scores
-    double apart[kKinds] = {};       // that minus the true one's score, summed over the steps; 0 where the true one is new
+    double apart[kKinds] = {};  // that minus the true one's score, summed over the steps; 0 where the true one is new
   };
   // What a shard adds up.
   struct Part {

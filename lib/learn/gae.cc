@@ -9,7 +9,7 @@ std::vector<float> advantages(const GaeInput& input, const GaeOptions& options) 
     for (int t = input.steps - 1; t >= 0; --t) {
       const size_t at = size_t(t) * input.lanes + lane;
       const bool last = t == input.steps - 1;
-      const double next_value = input.end[at] == StepEnd::kTerminated ? 0
+      const double next_value = input.end[at] == StepEnd::kTerminated  ? 0
                                 : input.end[at] == StepEnd::kTruncated ? input.cut_value[at]
                                 : last                                 ? input.last_value[lane]
                                                                        : input.value[at + input.lanes];

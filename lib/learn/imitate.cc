@@ -4,24 +4,27 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "play/evaluate.h"
 #include "nn/adam.h"
 #include "nn/loss.h"
+#include "play/evaluate.h"
 
 namespace synpo {
 namespace {
 
 // The window is not known before the first trajectory.
-Model start_model(const World& world, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen, uint64_t seed) {
+Model start_model(const World& world, const std::string& method, const ImitationOptions& options,
+                  std::vector<EnvTask> seen, uint64_t seed) {
   Model model = fresh_model(method, options.shape(world), {seed, options.embedding_sd});
   model.window = -1;
   model.seen = std::move(seen);
   return model;
 }
 
-// The model of a checkpoint that a run can go on from. Nothing is made as large as its options say before its tensors have been seen.
+// The model of a checkpoint that a run can go on from. Nothing is made as large as its options say before its tensors
+// have been seen.
 Model resumable(const World& world, const Checkpoint& checkpoint) {
-  if (!checkpoint.file.has("train/position")) fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
+  if (!checkpoint.file.has("train/position"))
+    fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
   Model saved = load_model(checkpoint, world);
   if (describe_shape(saved.shape) != describe_shape(parse_options(checkpoint.options).shape(world)))
     fail(Exit::kData, "the checkpoint's shape and options disagree");
@@ -37,8 +40,9 @@ void copy(const Buffer<float>& from, Buffer<float>& to) {
 
 Imitation::Imitation(const World& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
                      std::vector<EnvTask> seen, uint64_t seed)
-    : world_(world), parallel_(parallel), options_(options), model_(start_model(world, method, options, std::move(seen), seed)),
-      memory_(size_t(options.memory)), running_(world, options.running_options(0, 0), seed), seen_grows_(model_.seen.empty()) {
+    : world_(world), parallel_(parallel), options_(options),
+      model_(start_model(world, method, options, std::move(seen), seed)), memory_(size_t(options.memory)),
+      running_(world, options.running_options(0, 0), seed), seen_grows_(model_.seen.empty()) {
   const size_t count = model_.parameters.size();
   gradient_.grow(count);
   first_moment_.grow(count);
@@ -81,8 +85,10 @@ Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& c
 void Imitation::take_weights(const Model& other) {
   if (other.method != model_.method || describe_shape(other.shape) != describe_shape(model_.shape))
     fail(Exit::kData, "the checkpoint's network is not the one asked for: method or sizes differ");
-  for (auto* to : {&model_.parameters, &average_}) std::copy_n(other.parameters.data(), other.parameters.size(), to->data());
-  for (auto* to : {&model_.statistics, &average_statistics_}) std::copy_n(other.statistics.data(), other.statistics.size(), to->data());
+  for (auto* to : {&model_.parameters, &average_})
+    std::copy_n(other.parameters.data(), other.parameters.size(), to->data());
+  for (auto* to : {&model_.statistics, &average_statistics_})
+    std::copy_n(other.statistics.data(), other.statistics.size(), to->data());
 }
 
 void Imitation::add_trajectories(TrajectoryStream& stream) {
@@ -107,7 +113,8 @@ bool Imitation::update(TrajectoryStream& stream) {
   if (single_steps)
     running_.draw(memory_, parallel_, int(options_.batch_states), model_.window, model_.updates, batch_);
   else
-    TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed, model_.updates, batch_);
+    TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed,
+                         model_.updates, batch_);
 
   const int n = batch_.size(), actions = world_.actions();
   logits_.grow(size_t(n) * actions);
@@ -122,16 +129,18 @@ bool Imitation::update(TrajectoryStream& stream) {
                                   uint64_t(model_.updates),
                                   batch_.next.data(),
                                   batch_.planner_q.data()};
-  const Losses losses = model_.policy->step(parallel_, steps, options_.losses(), model_.parameters.data(), model_.statistics.data(),
-                                            gradient_.data(), logits_.data());
-  if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", model_.updates + 1, ": try a smaller --lr");
+  const Losses losses = model_.policy->step(parallel_, steps, options_.losses(), model_.parameters.data(),
+                                            model_.statistics.data(), gradient_.data(), logits_.data());
+  if (!std::isfinite(losses.total))
+    fail(Exit::kInternal, "the loss is not finite at update ", model_.updates + 1, ": try a smaller --lr");
   AdamOptions adam = options_.adam();
   adam.learning_rate = options_.rate(model_.updates, total_updates_);
   const bool averaged = options_.averaging > 0;
   // The first updates' weights are far from where the average should be.
   const double keep = std::min(options_.averaging, (1.0 + model_.updates) / (10.0 + model_.updates));
-  adam_step(parallel_, adam, model_.updates + 1, model_.policy->parameters().total(), gradient_.data(), model_.parameters.data(),
-            first_moment_.data(), second_moment_.data(), averaged ? average_.data() : nullptr, keep);
+  adam_step(parallel_, adam, model_.updates + 1, model_.policy->parameters().total(), gradient_.data(),
+            model_.parameters.data(), first_moment_.data(), second_moment_.data(), averaged ? average_.data() : nullptr,
+            keep);
   if (averaged)
     for (size_t i = 0; i < model_.policy->statistics().total(); ++i)
       average_statistics_[i] = float(keep * average_statistics_[i] + (1 - keep) * model_.statistics[i]);
@@ -179,7 +188,8 @@ RunLogRow Imitation::take_report() {
 }
 
 RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
-  return synpo::evaluate_sample(parallel_, world_, model_, best_parameters().data(), best_statistics().data(), episodes);
+  return synpo::evaluate_sample(parallel_, world_, model_, best_parameters().data(), best_statistics().data(),
+                                episodes);
 }
 
 Checkpoint Imitation::checkpoint(bool with_training_state) const {

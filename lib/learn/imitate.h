@@ -5,8 +5,8 @@
 
 #include "base/parallel.h"
 #include "format/run_log.h"
-#include "play/model.h"
 #include "learn/recipe.h"
+#include "play/model.h"
 #include "play/stream.h"
 
 namespace synpo {
@@ -15,14 +15,15 @@ namespace synpo {
 class Imitation {
  public:
   // A fresh run of `method`. No seen pairs: those that the stream brings.
-  Imitation(const World& world, Parallel& parallel, const std::string& method, const ImitationOptions& options, std::vector<EnvTask> seen,
-            uint64_t seed);
+  Imitation(const World& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
+            std::vector<EnvTask> seen, uint64_t seed);
   // A run that goes on from a checkpoint with its train/ part. Throws kData where that is missing or malformed.
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint);
   // Takes the weights of another model, whose shape must be this one's (kData).
   void take_weights(const Model& other);
 
-  // One update: reads, draws, learns. False when there is nothing to draw from: the stream ended before its first trajectory.
+  // One update: reads, draws, learns. False when there is nothing to draw from: the stream ended before its first
+  // trajectory.
   bool update(TrajectoryStream& stream);
 
   // Where the stream stood; a resumed run skips to there.
@@ -40,8 +41,8 @@ class Imitation {
 
   // Means since the last call: losses, accuracies, learning rate. Times are the caller's.
   RunLogRow take_report();
-  // Success, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones at
-  // every call. NaN where there are no such pairs.
+  // Success, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode
+  // each; the same ones at every call. NaN where there are no such pairs.
   RunLogRow::Evaluation evaluate_sample(int episodes);
 
   Checkpoint checkpoint(bool with_training_state) const;
@@ -51,7 +52,9 @@ class Imitation {
   void add_trajectories(TrajectoryStream& stream);
   // What is evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
-  const Buffer<float>& best_statistics() const { return options_.averaging > 0 ? average_statistics_ : model_.statistics; }
+  const Buffer<float>& best_statistics() const {
+    return options_.averaging > 0 ? average_statistics_ : model_.statistics;
+  }
 
   const World& world_;
   Parallel& parallel_;

@@ -13,9 +13,11 @@ struct LongRun {
   LongRun(int64_t every, int64_t report) : every(every), report(report) {}
   void add_to(Options& options);
 
-  // Whether update number `update`, perhaps the last one, is followed by an evaluation, a row of the log (with every evaluation there is one),
-  // a checkpoint in `save` (the last one is not: it goes to `output`).
-  bool evaluates(int64_t update, bool last) const { return evaluate_every > 0 && (update % evaluate_every == 0 || last); }
+  // Whether update number `update`, perhaps the last one, is followed by an evaluation, a row of the log (with every
+  // evaluation there is one), a checkpoint in `save` (the last one is not: it goes to `output`).
+  bool evaluates(int64_t update, bool last) const {
+    return evaluate_every > 0 && (update % evaluate_every == 0 || last);
+  }
   bool reports(int64_t update, bool last) const { return update % report == 0 || last || evaluates(update, last); }
   bool saves(int64_t update, bool last) const { return !save.empty() && update % every == 0 && !last; }
 };

@@ -13,7 +13,8 @@ class ReplayMemory {
   void add(Episode episode);
   size_t size() const { return episodes_.size(); }
   const Episode& operator[](size_t i) const { return episodes_[i]; }
-  // Number of the trajectory at position i, counted from the stream's first: it tells whether the place has been taken over since.
+  // Number of the trajectory at position i, counted from the stream's first: it tells whether the place has been taken
+  // over since.
   uint64_t serial(size_t i) const { return serials_[i]; }
 
   void save(SafeTensors& file, const std::string& prefix) const;

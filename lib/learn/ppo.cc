@@ -5,8 +5,8 @@
 #include <numeric>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "base/take_rows.h"
+#include "base/text.h"
 #include "nn/softmax.h"
 
 namespace synpo {
@@ -44,7 +44,8 @@ std::map<std::string, std::string> PpoOptions::describe() const {
 
 LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise) {
   LossWeights weights = otherwise;
-  const std::pair<std::string, double*> named[] = {{"reward-loss", &weights.reward}, {"env-loss", &weights.env}, {"task-loss", &weights.task}};
+  const std::pair<std::string, double*> named[] = {
+      {"reward-loss", &weights.reward}, {"env-loss", &weights.env}, {"task-loss", &weights.task}};
   for (const auto& [name, weight] : named)
     for (const std::string& key : {name, "ppo." + name}) {
       const auto found = from.options.find(key);
@@ -65,9 +66,10 @@ class Ppo::RolloutObjective : public Objective<float> {
     const ClippingOptions& options = ppo_.options_.clipping;
     const Rollout& rollout = ppo_.rollout_;
     const std::vector<int> action = gathered(rollout.action, rows_);
-    const std::vector<float> log_probability = gathered(rollout.log_probability, rows_), advantage = gathered(rollout.advantage, rows_);
-    static_cast<ClippedLosses&>(result) =
-        clipped_objective({n, action.data(), log_probability.data(), advantage.data()}, options, ppo_.world_.actions(), logits, dlogits);
+    const std::vector<float> log_probability = gathered(rollout.log_probability, rows_),
+                             advantage = gathered(rollout.advantage, rows_);
+    static_cast<ClippedLosses&>(result) = clipped_objective(
+        {n, action.data(), log_probability.data(), advantage.data()}, options, ppo_.world_.actions(), logits, dlogits);
     result.value = learn_value(parallel, n, psi, dpsi);
     return result.policy + ppo_.options_.value_loss * result.value - options.entropy * result.entropy;
   }
@@ -80,11 +82,13 @@ class Ppo::RolloutObjective : public Objective<float> {
     const int d = ppo_.model_.shape.feature, in = ppo_.value_inputs();
     std::vector<float> x(size_t(n) * in), dx(x.size()), dvalue(n);
     for (int i = 0; i < n; ++i)
-      ppo_.make_value_input(psi + size_t(i) * d, ppo_.rollout_.env[rows_[i]], ppo_.rollout_.task[rows_[i]], x.data() + size_t(i) * in);
+      ppo_.make_value_input(psi + size_t(i) * d, ppo_.rollout_.env[rows_[i]], ppo_.rollout_.task[rows_[i]],
+                            x.data() + size_t(i) * in);
     const float* value = ppo_.value_->forward(parallel, n, x.data(), ppo_.value_parameters_.data());
     const double loss = value_loss(n, value, gathered(ppo_.rollout_.target, rows_).data(), dvalue.data());
     std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
-    ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(), ppo_.value_gradient_.data());
+    ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(),
+                          ppo_.value_gradient_.data());
     // RMSProp would undo a weight in the value's own gradients: it is what psi hears of the value.
     const float weight = float(ppo_.options_.value_loss);
     for (int i = 0; i < n; ++i)
@@ -100,7 +104,8 @@ class Ppo::RolloutObjective : public Objective<float> {
 Ppo::Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed)
     : world_(world), parallel_(parallel), options_(options), seed_(seed), model_(std::move(model)),
       lanes_(world, model_.seen, options.lanes, model_.window, seed) {
-  if (size() % options_.minibatches != 0) fail(Exit::kUsage, size(), " steps of a rollout cannot be cut into ", options_.minibatches, " minibatches");
+  if (size() % options_.minibatches != 0)
+    fail(Exit::kUsage, size(), " steps of a rollout cannot be cut into ", options_.minibatches, " minibatches");
   value_ = std::make_unique<Perceptron<float>>("value", value_inputs(), options_.value_hidden, 1, value_layout_);
   value_parameters_.assign(value_layout_.total(), 0);
   value_gradient_.assign(value_layout_.total(), 0);
@@ -115,7 +120,9 @@ Ppo::Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& 
 
 int Ppo::value_inputs() const {
   const PolicyShape& shape = model_.shape;
-  const auto width = [&](const char* name, int count) { return model_.policy->parameters().find(name) ? shape.embedding : count; };
+  const auto width = [&](const char* name, int count) {
+    return model_.policy->parameters().find(name) ? shape.embedding : count;
+  };
   return shape.feature + width("embedding.env", shape.envs) + width("embedding.task", shape.tasks);
 }
 
@@ -153,8 +160,10 @@ void Ppo::measure_statistics(int batches) {
       if (lanes_.step(lane, action[i]).ended()) lanes_.restart(lane);
     }
     logits.resize(size_t(n) * actions);
-    StepBatch<float> steps = {n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
-    model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(), logits.data());
+    StepBatch<float> steps = {
+        n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+    model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(),
+                        logits.data());
   }
   lanes_.take_finished();
 }
@@ -172,8 +181,8 @@ void Ppo::look(const std::vector<int>& lanes, uint8_t* observations, float* logi
       lanes_.observe(lanes[i], observations + i * world_.observation_size());
       pair[i - range.begin] = lanes_.pair(lanes[i]);
     }
-    model_.policy->infer(thread, range.size(), observations + range.begin * world_.observation_size(), pair.data(), logits + size_t(range.begin) * actions,
-                         psi + size_t(range.begin) * d);
+    model_.policy->infer(thread, range.size(), observations + range.begin * world_.observation_size(), pair.data(),
+                         logits + size_t(range.begin) * actions, psi + size_t(range.begin) * d);
     for (int i = range.begin; i < range.end; ++i) {
       const EnvTask at = lanes_.pairs()[lanes_.pair(lanes[i])];
       make_value_input(psi + size_t(i) * d, at.env, at.task, x.data() + size_t(i - range.begin) * in);
@@ -203,14 +212,16 @@ void Ppo::collect() {
   std::vector<uint8_t> spare(lanes * world_.observation_size());
   for (int t = 0; t < options_.rollout; ++t) {
     const size_t first = size_t(t) * lanes;
-    look(all, r.observations.data() + first * world_.observation_size(), logits.data(), psi.data(), r.value.data() + first);
+    look(all, r.observations.data() + first * world_.observation_size(), logits.data(), psi.data(),
+         r.value.data() + first);
     std::vector<int> cut;
     for (int lane = 0; lane < lanes; ++lane) {
       const size_t at = first + lane;
       const EnvTask pair = lanes_.pairs()[lanes_.pair(lane)];
       const float* scores = logits.data() + size_t(lane) * actions;
       const double log_sum = softmax(scores, actions, 1, p.data());
-      const int action = draw(p.data(), actions, Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
+      const int action = draw(p.data(), actions,
+                              Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
       r.env[at] = pair.env;
       r.task[at] = pair.task;
       r.action[at] = action;
@@ -232,8 +243,9 @@ void Ppo::collect() {
   look(all, spare.data(), logits.data(), psi.data(), r.last_value.data());
   steps_ += size();
 
-  r.advantage =
-      advantages({options_.rollout, lanes, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()}, options_.gae);
+  r.advantage = advantages(
+      {options_.rollout, lanes, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()},
+      options_.gae);
   r.target.resize(size());
   double sum = 0, squares = 0, target_sum = 0, target_squares = 0;
   for (int i = 0; i < size(); ++i) {
@@ -247,31 +259,37 @@ void Ppo::collect() {
   const double target_variance = target_squares / size() - target_sum / size() * target_sum / size();
   // The advantage is what the value has not explained of the return.
   report_.explained_variance += target_variance > 0 ? 1 - variance / target_variance : 0;
-  for (float& advantage : r.advantage) advantage = float((advantage - mean) / (std::sqrt(std::max(0.0, variance)) + 1e-8));
+  for (float& advantage : r.advantage)
+    advantage = float((advantage - mean) / (std::sqrt(std::max(0.0, variance)) + 1e-8));
 }
 
 void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
   const int n = int(rows.size()), actions = world_.actions();
   const std::vector<uint8_t> observations = gathered(rollout_.observations, rows, world_.observation_size());
-  const std::vector<int> env = gathered(rollout_.env, rows), task = gathered(rollout_.task, rows), action = gathered(rollout_.action, rows);
+  const std::vector<int> env = gathered(rollout_.env, rows), task = gathered(rollout_.task, rows),
+                         action = gathered(rollout_.action, rows);
   const std::vector<float> reward = gathered(rollout_.reward, rows);
   std::vector<float> logits(size_t(n) * actions);
   RolloutObjective objective(*this, rows);
-  StepBatch<float> batch = {n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+  StepBatch<float> batch = {
+      n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
   batch.frozen_statistics = true;
   batch.objective = &objective;
-  const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
-                                            gradient_.data(), logits.data());
-  if (!std::isfinite(losses.total)) fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
+  const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(),
+                                            model_.statistics.data(), gradient_.data(), logits.data());
+  if (!std::isfinite(losses.total))
+    fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
   const size_t count = model_.policy->parameters().total(), value_count = value_layout_.total();
-  const double length = std::sqrt(sum_of_squares(parallel_, count, gradient_.data()) + sum_of_squares(parallel_, value_count, value_gradient_.data()));
+  const double length = std::sqrt(sum_of_squares(parallel_, count, gradient_.data()) +
+                                  sum_of_squares(parallel_, value_count, value_gradient_.data()));
   const float factor = float(clip_factor(length, options_.gradient_norm));
-  // While the value alone learns, the policy's mean squares are gathered, but it does not move: they start at zero, and the first steps would be
-  // ten times as long as those that follow.
+  // While the value alone learns, the policy's mean squares are gathered, but it does not move: they start at zero, and
+  // the first steps would be ten times as long as those that follow.
   RmsPropOptions policy_steps = options_.optimiser;
   if (value_alone) policy_steps.learning_rate = 0;
   rmsprop_step(parallel_, policy_steps, count, factor, gradient_.data(), model_.parameters.data(), v_.data());
-  rmsprop_step(parallel_, options_.optimiser, value_count, factor, value_gradient_.data(), value_parameters_.data(), value_v_.data());
+  rmsprop_step(parallel_, options_.optimiser, value_count, factor, value_gradient_.data(), value_parameters_.data(),
+               value_v_.data());
   last_ = objective.result;
 }
 
@@ -307,7 +325,8 @@ PpoReport Ppo::take_report() {
   report.steps = steps_;
   report.finished = lanes_.take_finished();
   report.explained_variance /= std::max(1, reported_rollouts_);
-  for (double* mean : {&report.policy, &report.value, &report.entropy, &report.kl, &report.clip_fraction}) *mean /= std::max(1, reported_minibatches_);
+  for (double* mean : {&report.policy, &report.value, &report.entropy, &report.kl, &report.clip_fraction})
+    *mean /= std::max(1, reported_minibatches_);
   reported_minibatches_ = reported_rollouts_ = 0;
   return report;
 }
@@ -329,7 +348,8 @@ Checkpoint Ppo::checkpoint(bool with_training_state) const {
 
 void Ppo::resume(const Checkpoint& checkpoint) {
   const SafeTensors& file = checkpoint.file;
-  if (!file.has("train/ppo/position")) fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
+  if (!file.has("train/ppo/position"))
+    fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
   for (const auto& [name, value] : options_.describe()) {
     const auto found = checkpoint.options.find(name);
     const std::string had = found == checkpoint.options.end() ? "none" : found->second;
@@ -345,8 +365,10 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   int64_t position[3];
   file.get("train/ppo/position", position, 3);
   constexpr int64_t kMost = int64_t(1) << 53;
-  if (position[0] < 0 || position[1] < 0 || position[0] > kMost || position[1] > kMost) fail(Exit::kData, "tensor 'train/ppo/position' is malformed");
-  if (uint64_t(position[2]) != seed_) fail(Exit::kData, "the run in the checkpoint has seed ", position[2], ", not ", seed_);
+  if (position[0] < 0 || position[1] < 0 || position[0] > kMost || position[1] > kMost)
+    fail(Exit::kData, "tensor 'train/ppo/position' is malformed");
+  if (uint64_t(position[2]) != seed_)
+    fail(Exit::kData, "the run in the checkpoint has seed ", position[2], ", not ", seed_);
   updates_ = position[0];
   steps_ = position[1];
 }

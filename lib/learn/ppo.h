@@ -1,10 +1,12 @@
-// PPO fine-tuning (supplement, Section 3; Schulman et al. 2017): worlds under the learner's own actions, advantages by GAE, the clipped objective.
+// PPO fine-tuning (supplement, Section 3; Schulman et al. 2017): worlds under the learner's own actions, advantages by
+// GAE, the clipped objective.
 //
-//   loss = the clipped objective's and the value's (clipped_objective.h) + the auxiliary losses of imitation, at the action taken
+//   loss = the clipped objective's and the value's (clipped_objective.h) + the auxiliary losses of imitation, at the
+//   action taken
 //
-// Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the first minibatch
-// behind a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient reaches psi and not the embeddings;
-// for a method without one of these, one-hot in its place.
+// Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the
+// first minibatch behind a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient
+// reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
 #pragma once
 #include <memory>
 #include <string>
@@ -13,28 +15,29 @@
 #include "base/parallel.h"
 #include "learn/clipped_objective.h"
 #include "learn/gae.h"
-#include "play/lanes.h"
-#include "play/model.h"
 #include "nn/layers/perceptron.h"
 #include "nn/rmsprop.h"
+#include "play/lanes.h"
+#include "play/model.h"
 
 namespace synpo {
 
 struct PpoOptions {
-  int lanes = 16, rollout = 128;      // worlds side by side, and steps of each before an update
-  int epochs = 4, minibatches = 4;    // over a rollout
-  int value_warm_up = 20;             // first rollouts, in which the value alone learns
+  int lanes = 16, rollout = 128;    // worlds side by side, and steps of each before an update
+  int epochs = 4, minibatches = 4;  // over a rollout
+  int value_warm_up = 20;           // first rollouts, in which the value alone learns
   int value_hidden = 512;
-  double value_loss = 1;              // weight of the value's loss
+  double value_loss = 1;  // weight of the value's loss
   ClippingOptions clipping;
   double gradient_norm = 0.5;
   GaeOptions gae;
   RmsPropOptions optimiser;
-  LossWeights losses;                 // the auxiliary ones
+  LossWeights losses;  // the auxiliary ones
   std::map<std::string, std::string> describe() const;
 };
 
-// The auxiliary losses weigh what they did in the run that made the checkpoint; `otherwise` where it does not say. Throws kData for values that are none.
+// The auxiliary losses weigh what they did in the run that made the checkpoint; `otherwise` where it does not say.
+// Throws kData for values that are none.
 LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise);
 
 // Means since the report before.

@@ -22,15 +22,16 @@ struct Hyper {
   const char* help;
   const char* heading = nullptr;
   std::vector<std::string> choices = {};  // names of 0, 1, ...
-  bool late = false;  // checkpoints made before this option have its default
-  std::set<std::string> methods = {};  // that have such a thing; none: all
+  bool late = false;                      // checkpoints made before this option have its default
+  std::set<std::string> methods = {};     // that have such a thing; none: all
 };
 
 constexpr double kMany = 1e9;
 constexpr int kTemporalFeature = 256;  // d of Table 3
 
 const Hyper kHypers[] = {
-    {"trajectories", &O::trajectories, 1, 1e5, true, "whole trajectories an update, where --batch-states is 0", "What an update learns from"},
+    {"trajectories", &O::trajectories, 1, 1e5, true, "whole trajectories an update, where --batch-states is 0",
+     "What an update learns from"},
     {"batch-states", &O::batch_states, 0, 1e6, true, "single steps an update, from episodes that run side by side"},
     {"memory", &O::memory, 1, 1e7, true, "trajectories kept in the replay memory"},
     {"read", &O::read, 0, 1e6, true, "trajectories read from the stream before each update"},
@@ -40,7 +41,8 @@ const Hyper kHypers[] = {
     {"balance-final", &O::balance_final, 0, 1, false, "what --balance moves to by the run's end; 0: it stays"},
     {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
-    {"fresh-starts", &O::fresh_starts, 0, 1, true, "1: running episodes start anywhere, the stream gives the pairs alone"},
+    {"fresh-starts", &O::fresh_starts, 0, 1, true,
+     "1: running episodes start anywhere, the stream gives the pairs alone"},
     {"roll-limit", &O::roll_limit, 1, kStepLimit, true, "steps after which a running episode is given up"},
     {"lr", &O::learning_rate, 0, 1, false, "learning rate of Adam", "The optimiser"},
     {"cosine", &O::cosine, 0, 1, true, "1: the learning rate falls by half a cosine to the run's end; 0: constant"},
@@ -50,25 +52,69 @@ const Hyper kHypers[] = {
     {"beta2", &O::beta2, 0, 0.9999999, false, "decay of Adam's second moment"},
     {"epsilon", &O::epsilon, 1e-30, 1, false, "Adam's epsilon"},
     {"weight-decay", &O::weight_decay, 0, 1, false, "L2 term added to the gradient"},
-    {"averaging", &O::averaging, 0, 0.9999999, false, "decay of the averaged weights that are evaluated and saved; 0: none"},
+    {"averaging", &O::averaging, 0, 0.9999999, false,
+     "decay of the averaged weights that are evaluated and saved; 0: none"},
     {"reward-loss", &O::reward_loss, 0, 1e6, false, "weight of reward prediction (lambda 1)", "The losses"},
     {"env-loss", &O::env_loss, 0, 1e6, false, "weight of environment disentanglement (lambda 2)"},
     {"task-loss", &O::task_loss, 0, 1e6, false, "weight of task disentanglement (lambda 3)"},
-    {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform", "The network"},
+    {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform",
+     "The network"},
     {"normalise-input", &O::normalise_input, 0, 1, true, "1: batch normalisation of the pictures, 0: fixed scaling"},
     {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "1: embeddings are scaled to one length"},
     {"feature", &O::feature, 1, 4096, true, "size d of the state feature; kitchens: 256"},
     {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
     {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
     {"hidden", &O::hidden, 1, 16384, true, "hidden units of alpha, beta, f_env and f_task"},
-    {"action-embedding", &O::action_embedding, 0, 4096, true, "synpo, mtl: size of learned phi(a); 0: phi(a) is one-hot", nullptr, {}, true,
+    {"action-embedding",
+     &O::action_embedding,
+     0,
+     4096,
+     true,
+     "synpo, mtl: size of learned phi(a); 0: phi(a) is one-hot",
+     nullptr,
+     {},
+     true,
      {"synpo", "mtl"}},
-    {"head-hidden", &O::head_hidden, 1, 16384, true, "mlp, modulenet, sf: hidden units of their own parts",
-     "Single methods", {}, true, {"mlp", "modulenet", "sf"}},
-    {"seam", &O::seam, 1, 4096, true, "modulenet: size of what a task's module hands on", nullptr, {}, true, {"modulenet"}},
-    {"dropout", &O::dropout, 0, 0.99, false, "modulenet: probability that a value of that is left out", nullptr, {}, true, {"modulenet"}},
-    {"sf-loss", &O::sf_loss, 0, 2, true, "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)", nullptr,
-     {"td", "q", "ce"}, true, {"sf"}},
+    {"head-hidden",
+     &O::head_hidden,
+     1,
+     16384,
+     true,
+     "mlp, modulenet, sf: hidden units of their own parts",
+     "Single methods",
+     {},
+     true,
+     {"mlp", "modulenet", "sf"}},
+    {"seam",
+     &O::seam,
+     1,
+     4096,
+     true,
+     "modulenet: size of what a task's module hands on",
+     nullptr,
+     {},
+     true,
+     {"modulenet"}},
+    {"dropout",
+     &O::dropout,
+     0,
+     0.99,
+     false,
+     "modulenet: probability that a value of that is left out",
+     nullptr,
+     {},
+     true,
+     {"modulenet"}},
+    {"sf-loss",
+     &O::sf_loss,
+     0,
+     2,
+     true,
+     "sf: temporal differences (td), the planner's Q (q) or cross-entropy (ce)",
+     nullptr,
+     {"td", "q", "ce"},
+     true,
+     {"sf"}},
     {"discount", &O::discount, 0, 0.9999, false, "sf: gamma of td", nullptr, {}, true, {"sf"}},
 };
 
@@ -81,9 +127,14 @@ struct MethodDefault {
 constexpr MethodDefault kMethodDefaults[] = {
     {"mlp", "feature", 256}, {"modulenet", "head-hidden", 128}, {"sf", "head-hidden", 512}, {"sf", "reward-loss", 1}};
 // In "fast": what scripts/reproduce grid has chosen, but for MTL's embeddings (lab/book.md).
-constexpr MethodDefault kFastDefaults[] = {{"mlp", "embedding-sd", 0.3}, {"mlp", "weight-decay", 1e-5}, {"modulenet", "dropout", 0},
-                                           {"modulenet", "weight-decay", 0}, {"sf", "sf-loss", double(SfLoss::kCrossEntropy)},
-                                           {"sf", "embedding-sd", 0.1}, {"sf", "reward-loss", 0.01}, {"sf", "weight-decay", 1e-4}};
+constexpr MethodDefault kFastDefaults[] = {{"mlp", "embedding-sd", 0.3},
+                                           {"mlp", "weight-decay", 1e-5},
+                                           {"modulenet", "dropout", 0},
+                                           {"modulenet", "weight-decay", 0},
+                                           {"sf", "sf-loss", double(SfLoss::kCrossEntropy)},
+                                           {"sf", "embedding-sd", 0.1},
+                                           {"sf", "reward-loss", 0.01},
+                                           {"sf", "weight-decay", 1e-4}};
 
 const Hyper& find(const std::string& name) {
   return *std::find_if(std::begin(kHypers), std::end(kHypers), [&](const Hyper& hyper) { return hyper.name == name; });
@@ -95,7 +146,9 @@ void give(const MethodDefault (&defaults)[N], const std::string& method, O& opti
     if (method == given.method) options.*find(given.name).value = given.value;
 }
 
-std::string show(const Hyper& hyper, double value) { return hyper.choices.empty() ? shortest(value) : hyper.choices[size_t(value)]; }
+std::string show(const Hyper& hyper, double value) {
+  return hyper.choices.empty() ? shortest(value) : hyper.choices[size_t(value)];
+}
 
 bool parse(const std::string& text, const Hyper& hyper, double& value) {
   if (!hyper.choices.empty()) {
@@ -175,7 +228,8 @@ ImitationOptions recipe(const std::string& name, const std::string& method, Sigh
 
 namespace {
 
-// A recipe's value of a hyper-parameter, and in parentheses the methods that have another: "0.001 (mlp 1e-05, modulenet 0)".
+// A recipe's value of a hyper-parameter, and in parentheses the methods that have another: "0.001 (mlp 1e-05, modulenet
+// 0)".
 std::string default_of(const Hyper& hyper, const std::string& name) {
   std::string common, others;
   for (const std::string& method : method_names()) {
@@ -192,19 +246,21 @@ std::string default_of(const Hyper& hyper, const std::string& name) {
 }  // namespace
 
 void RecipeOptions::add_to(Options& options) {
-  options.call(0, "recipe", "NAME", "preset: fast, or paper (the supplement to the letter) [fast]", [this](const std::string& name) {
-    try {
-      recipe(name);
-    } catch (const Error&) {
-      throw std::invalid_argument("expected fast or paper");
-    }
-    recipe_ = name;
-    recipe_given_ = true;
-  });
+  options.call(0, "recipe", "NAME", "preset: fast, or paper (the supplement to the letter) [fast]",
+               [this](const std::string& name) {
+                 try {
+                   recipe(name);
+                 } catch (const Error&) {
+                   throw std::invalid_argument("expected fast or paper");
+                 }
+                 recipe_ = name;
+                 recipe_given_ = true;
+               });
   for (const Hyper& hyper : kHypers) {
     if (hyper.heading) options.section(hyper.heading);
     const std::string a = default_of(hyper, "fast"), b = default_of(hyper, "paper");
-    const std::string shown = std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
+    const std::string shown =
+        std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
     options.call(0, hyper.name, "X", shown.c_str(), [this, &hyper](const std::string& text) {
       double value = 0;
       if (!parse(text, hyper, value)) throw std::invalid_argument(expectation(hyper));
@@ -221,14 +277,16 @@ ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) c
   ImitationOptions options = recipe(recipe_, method, sight);
   for (const Hyper& hyper : kHypers)
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) {
-      if (!hyper.methods.empty() && !hyper.methods.count(method)) fail(Exit::kUsage, "-m ", method, " has no --", hyper.name);
+      if (!hyper.methods.empty() && !hyper.methods.count(method))
+        fail(Exit::kUsage, "-m ", method, " has no --", hyper.name);
       options.*hyper.value = change->second;
     }
   if (no_reward_loss_) options.reward_loss = 0;
   if (no_env_loss_) options.env_loss = 0;
   if (no_task_loss_) options.task_loss = 0;
   if (options.batch_states == 0)
-    for (const char* name : {"balance", "balance-final", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
+    for (const char* name :
+         {"balance", "balance-final", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
   return options;
 }

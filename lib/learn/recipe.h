@@ -12,16 +12,17 @@ namespace synpo {
 
 struct ImitationOptions {
   // What an update learns from.
-  double trajectories = 64;     // whole trajectories, where batch_states is 0
-  double batch_states = 0;      // single steps from running episodes
-  double memory = 20000;        // trajectories kept
-  double read = 1;              // trajectories read before an update
-  double fill = 1;              // trajectories read before the first update
+  double trajectories = 64;  // whole trajectories, where batch_states is 0
+  double batch_states = 0;   // single steps from running episodes
+  double memory = 20000;     // trajectories kept
+  double read = 1;           // trajectories read before an update
+  double fill = 1;           // trajectories read before the first update
   double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = kStepLimit;
-  double balance_final = 0;     // what balance moves to, in a straight line, by the run's end; 0: it stays
+  double balance_final = 0;  // what balance moves to, in a straight line, by the run's end; 0: it stays
   // The optimiser.
-  double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8, weight_decay = 0.001;
-  double averaging = 0;         // decay of the averaged weights; 0: none
+  double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8,
+         weight_decay = 0.001;
+  double averaging = 0;  // decay of the averaged weights; 0: none
   // The losses.
   double reward_loss = 0.01, env_loss = 0.1, task_loss = 0.001;
   // The network.
@@ -37,12 +38,13 @@ struct ImitationOptions {
   RunningOptions running_options(int64_t update, int64_t total) const;
   PolicyShape shape(const World& world) const;
   AdamOptions adam() const { return {learning_rate, beta1, beta2, epsilon, weight_decay}; }
-  // Learning rate of update `update` (from 0) of `total`: linear warm-up, then constant or half a cosine down to final_rate.
+  // Learning rate of update `update` (from 0) of `total`: linear warm-up, then constant or half a cosine down to
+  // final_rate.
   double rate(int64_t update, int64_t total) const;
 };
 
-// "paper" is Algorithm 1 and the supplement to the letter; "fast" is the default. Throws kUsage for another name. Some values depend on the
-// method, and on what a world gives to see.
+// "paper" is Algorithm 1 and the supplement to the letter; "fast" is the default. Throws kUsage for another name. Some
+// values depend on the method, and on what a world gives to see.
 ImitationOptions recipe(const std::string& name, const std::string& method = "synpo", Sight sight = Sight::kPictures);
 constexpr char kDefaultRecipe[] = "fast";
 

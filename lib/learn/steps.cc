@@ -8,7 +8,8 @@ namespace synpo {
 namespace {
 
 constexpr int kUnit = 32;  // samples of a shard
-constexpr uint64_t kRestartStream = uint64_t{1} << 32;  // keeps restarts and updates apart among the numbers of Purpose::kRollIn
+constexpr uint64_t kRestartStream = uint64_t{1}
+                                    << 32;  // keeps restarts and updates apart among the numbers of Purpose::kRollIn
 
 void put_planner_q(const World& world, EnvTask pair, const WorldState& state, int at, Minibatch& batch) {
   if (!batch.needs.planner_q) return;
@@ -32,8 +33,8 @@ void Minibatch::resize(const World& world, int size) {
   planner_q.resize(needs.planner_q ? size_t(size) * world.actions() : 0);
 }
 
-void TrajectoryDraw::draw(const World& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed,
-                          int64_t update, Minibatch& batch) {
+void TrajectoryDraw::draw(const World& world, const ReplayMemory& memory, Parallel& parallel, int count, int window,
+                          uint64_t seed, int64_t update, Minibatch& batch) {
   Random random(seed, Purpose::kBatch, 0, uint64_t(update));
   std::vector<const Episode*> episodes(count);
   std::vector<int> first(count + 1, 0);
@@ -48,7 +49,8 @@ void TrajectoryDraw::draw(const World& world, const ReplayMemory& memory, Parall
     running.start(episode.pair, episode.start);
     for (size_t t = 0; t < episode.actions.size(); ++t) {
       const size_t at = first[i] + t;
-      world.observe(episode.pair.env, running.history, window, batch.observations.data() + at * world.observation_size());
+      world.observe(episode.pair.env, running.history, window,
+                    batch.observations.data() + at * world.observation_size());
       batch.env[at] = episode.pair.env;
       batch.task[at] = episode.pair.task;
       batch.label[at] = episode.labels[t];
@@ -98,11 +100,13 @@ WorldStep RunningDraw::move_on(const ReplayMemory& memory, Running& running, int
 }
 
 void RunningDraw::step(const ReplayMemory& memory, Running& running, uint32_t number, int action) {
-  if (move_on(memory, running, action).ended() || running.episode.now().steps >= options_.step_limit) restart(memory, running, number);
+  if (move_on(memory, running, action).ended() || running.episode.now().steps >= options_.step_limit)
+    restart(memory, running, number);
 }
 
 // The step that takes `action` where the episode stands.
-WorldStep RunningDraw::put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const {
+WorldStep RunningDraw::put(const ReplayMemory& memory, const Running& running, int action, int window, int at,
+                           Minibatch& batch) const {
   Running after = running;
   const WorldStep step = move_on(memory, after, action);
   int move;
@@ -115,11 +119,13 @@ WorldStep RunningDraw::put(const ReplayMemory& memory, const Running& running, i
   batch.reward[at] = float(step.reward_cents) / 100;
   batch.kind[at] = world_->kind(pair, state, batch.label[at]);
   put_planner_q(*world_, pair, state, at, batch);
-  world_->observe(pair.env, running.episode.history, window, batch.observations.data() + size_t(at) * world_->observation_size());
+  world_->observe(pair.env, running.episode.history, window,
+                  batch.observations.data() + size_t(at) * world_->observation_size());
   return step;
 }
 
-void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch) {
+void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update,
+                       Minibatch& batch) {
   if (batch.needs.next) count = (count + 1) / 2;
   // Never fewer than a minibatch takes: an episode is drawn once.
   if (running_.size() < size_t(count)) running_.resize(std::max(options_.episodes, count), Running{});
@@ -148,8 +154,10 @@ void RunningDraw::draw(const ReplayMemory& memory, Parallel& parallel, int count
       }
       while (true) {
         label_and_move(memory, running, label, move);
-        if (options_.noise > 0 && random.uniform() < options_.noise) move = int(random.below(uint32_t(world_->moves())));
-        if (world_->at_choice(running.episode.pair, running.episode.now()) || random.uniform() < options_.balance) break;
+        if (options_.noise > 0 && random.uniform() < options_.noise)
+          move = int(random.below(uint32_t(world_->moves())));
+        if (world_->at_choice(running.episode.pair, running.episode.now()) || random.uniform() < options_.balance)
+          break;
         step(memory, running, number, move);
       }
       moves_[i] = move;
@@ -196,7 +204,9 @@ void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const
   file.get(prefix + "next", &next, 1);
   const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "running' is malformed"); };
   const size_t count = words.size() / kWords;
-  if (words.size() % kWords != 0 || (count > 0 && count < size_t(options_.episodes)) || episodes.size() != count * kBytes) bad();
+  if (words.size() % kWords != 0 || (count > 0 && count < size_t(options_.episodes)) ||
+      episodes.size() != count * kBytes)
+    bad();
   running_.assign(count, Running{});
   if (next < 0 || (next > 0 && size_t(next) >= count)) bad();
   next_ = size_t(next);
@@ -214,7 +224,8 @@ void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const
     r.started = take(1) != 0;
     if (!r.started) continue;
     if (r.place >= memory.size() || !r.episode.load(*world_, episodes.data() + i * kBytes)) bad();
-    if (r.following && memory.serial(r.place) == r.serial && r.episode.now().steps >= memory[r.place].actions.size()) bad();
+    if (r.following && memory.serial(r.place) == r.serial && r.episode.now().steps >= memory[r.place].actions.size())
+      bad();
   }
 }
 

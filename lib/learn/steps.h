@@ -1,17 +1,18 @@
 // The steps of a minibatch, drawn from the replay memory in one of two ways.
 //
 // TrajectoryDraw is Algorithm 1: whole trajectories, uniformly, all their steps.
-// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in turn; one starts as
-// a trajectory of the memory and follows it, or is driven off it by random moves and the learner's own greedy moves, where the
-// planner then gives the label. Steps on which something could be taken (World::at_choice) are always taken, others with a probability.
+// RunningDraw takes single steps from many episodes that run side by side. Each update visits the next few of them in
+// turn; one starts as a trajectory of the memory and follows it, or is driven off it by random moves and the learner's
+// own greedy moves, where the planner then gives the label. Steps on which something could be taken (World::at_choice)
+// are always taken, others with a probability.
 #pragma once
 #include <cstdint>
 #include <vector>
 
 #include "base/parallel.h"
 #include "learn/memory.h"
-#include "policy/policy.h"
 #include "play/running_episode.h"
+#include "policy/policy.h"
 
 namespace synpo {
 
@@ -32,27 +33,28 @@ struct Minibatch {
 class TrajectoryDraw {
  public:
   // `count` trajectories with all their steps; update `update` of a run with this seed always draws the same.
-  static void draw(const World& world, const ReplayMemory& memory, Parallel& parallel, int count, int window, uint64_t seed, int64_t update,
-                   Minibatch& batch);
+  static void draw(const World& world, const ReplayMemory& memory, Parallel& parallel, int count, int window,
+                   uint64_t seed, int64_t update, Minibatch& batch);
 };
 
 struct RunningOptions {
-  int episodes = 8192;      // that run side by side
-  double balance = 1;       // probability of taking a step on which nothing could be taken
-  double roll_in = 0;       // probability of the learner's own greedy move behind a taken step
-  double noise = 0;         // probability of a random move otherwise
+  int episodes = 8192;        // that run side by side
+  double balance = 1;         // probability of taking a step on which nothing could be taken
+  double roll_in = 0;         // probability of the learner's own greedy move behind a taken step
+  double noise = 0;           // probability of a random move otherwise
   bool fresh_starts = false;  // agent and things are placed anew; the memory then gives the pair alone
   int step_limit = kStepLimit;
 };
 
 class RunningDraw {
  public:
-  RunningDraw(const World& world, const RunningOptions& options, uint64_t seed) : world_(&world), options_(options), seed_(seed) {}
+  RunningDraw(const World& world, const RunningOptions& options, uint64_t seed)
+      : world_(&world), options_(options), seed_(seed) {}
 
   // Takes over probabilities; the number of episodes stays.
   void set_options(const RunningOptions& options) { options_ = options; }
-  // The next `count` running episodes, each at its next step to be taken. Where the batch needs next steps, half as many, and the steps behind
-  // them, as the taken actions lead there.
+  // The next `count` running episodes, each at its next step to be taken. Where the batch needs next steps, half as
+  // many, and the steps behind them, as the taken actions lead there.
   void draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch);
   // Moves the episodes of the last draw() on, given the learner's greedy actions [count].
   void advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update);
@@ -64,13 +66,14 @@ class RunningDraw {
  private:
   struct Running {
     RunningEpisode episode;
-    uint64_t serial;   // of the trajectory that is followed
-    uint32_t place;    // in the memory
+    uint64_t serial;  // of the trajectory that is followed
+    uint32_t place;   // in the memory
     uint32_t restarts;
-    bool following;    // actions so far are the trajectory's
+    bool following;  // actions so far are the trajectory's
     bool started;
   };
-  WorldStep put(const ReplayMemory& memory, const Running& running, int action, int window, int at, Minibatch& batch) const;
+  WorldStep put(const ReplayMemory& memory, const Running& running, int action, int window, int at,
+                Minibatch& batch) const;
   void restart(const ReplayMemory& memory, Running& running, uint32_t number);
   // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.
   static const Episode* followed(const ReplayMemory& memory, const Running& running);
@@ -83,9 +86,9 @@ class RunningDraw {
   RunningOptions options_;
   uint64_t seed_;
   std::vector<Running> running_;
-  size_t next_ = 0;                     // the episode whose turn it is
-  std::vector<uint32_t> drawn_;         // of the last draw()
-  std::vector<int> moves_;              // what those would do without the learner
+  size_t next_ = 0;              // the episode whose turn it is
+  std::vector<uint32_t> drawn_;  // of the last draw()
+  std::vector<int> moves_;       // what those would do without the learner
 };
 
 }  // namespace synpo

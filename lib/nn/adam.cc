@@ -5,8 +5,8 @@
 namespace synpo {
 
 template <class T>
-void adam_step(Parallel& parallel, const AdamOptions& options, int64_t step, size_t count, const T* gradient, T* parameter, T* m, T* v,
-               T* average, double averaging) {
+void adam_step(Parallel& parallel, const AdamOptions& options, int64_t step, size_t count, const T* gradient,
+               T* parameter, T* m, T* v, T* average, double averaging) {
   AdamFactors<T> factors;
   factors.beta1 = T(options.beta1);
   factors.beta2 = T(options.beta2);
@@ -18,11 +18,14 @@ void adam_step(Parallel& parallel, const AdamOptions& options, int64_t step, siz
   constexpr size_t kPart = 1 << 16;
   parallel.run(int((count + kPart - 1) / kPart), [&](int shard, int) {
     const size_t begin = shard * kPart, size = begin + kPart < count ? kPart : count - begin;
-    kernels<T>().adam(size, factors, gradient + begin, parameter + begin, m + begin, v + begin, average ? average + begin : nullptr);
+    kernels<T>().adam(size, factors, gradient + begin, parameter + begin, m + begin, v + begin,
+                      average ? average + begin : nullptr);
   });
 }
 
-template void adam_step(Parallel&, const AdamOptions&, int64_t, size_t, const float*, float*, float*, float*, float*, double);
-template void adam_step(Parallel&, const AdamOptions&, int64_t, size_t, const double*, double*, double*, double*, double*, double);
+template void adam_step(Parallel&, const AdamOptions&, int64_t, size_t, const float*, float*, float*, float*, float*,
+                        double);
+template void adam_step(Parallel&, const AdamOptions&, int64_t, size_t, const double*, double*, double*, double*,
+                        double*, double);
 
 }  // namespace synpo

@@ -27,7 +27,8 @@ class Buffer {
       data_ = nullptr;
       size_ = 0;
       constexpr size_t kAlignment = 4096;
-      data_ = static_cast<T*>(std::aligned_alloc(kAlignment, (size * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment));
+      data_ = static_cast<T*>(
+          std::aligned_alloc(kAlignment, (size * sizeof(T) + kAlignment - 1) / kAlignment * kAlignment));
       if (!data_) throw std::bad_alloc();
       size_ = size;
     }

@@ -29,14 +29,15 @@ void gemm(Op op_a, int m, const T* a, int lda, const Packed<T>& b, T* c, int ldc
 }
 
 template <class T>
-void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, T* c, int ldc, bool accumulate) {
+void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, T* c, int ldc,
+          bool accumulate) {
   thread_local Packed<T> packed;  // memory to pack into; nothing of it outlives the call
   packed.pack(op_b, k, n, b, ldb);
   gemm(op_a, m, a, lda, packed, c, ldc, accumulate);
 }
 
-#define SYNPO_INSTANTIATE(T)                                                  \
-  template class Packed<T>;                                                   \
+#define SYNPO_INSTANTIATE(T)                                                   \
+  template class Packed<T>;                                                    \
   template void gemm(Op, int, const T*, int, const Packed<T>&, T*, int, bool); \
   template void gemm(Op, Op, int, int, int, const T*, int, const T*, int, T*, int, bool);
 SYNPO_INSTANTIATE(float)

@@ -6,8 +6,8 @@
 
 namespace synpo {
 
-// The right matrix of a product, laid out as the kernels read it. Packing weights once per update and using them for all samples is what
-// this is for.
+// The right matrix of a product, laid out as the kernels read it. Packing weights once per update and using them for
+// all samples is what this is for.
 template <class T>
 class Packed {
  public:
@@ -24,12 +24,14 @@ class Packed {
   Buffer<T> values_;
 };
 
-// C [m, n] = op(A) B, or += where `accumulate`, with op(A) [m, b.k()]. One thread; a row's bits depend on nothing but that row of op(A), and B.
+// C [m, n] = op(A) B, or += where `accumulate`, with op(A) [m, b.k()]. One thread; a row's bits depend on nothing but
+// that row of op(A), and B.
 template <class T>
 void gemm(Op op_a, int m, const T* a, int lda, const Packed<T>& b, T* c, int ldc, bool accumulate = false);
 
 // The same for op(B) [k, n] that is used once.
 template <class T>
-void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, T* c, int ldc, bool accumulate = false);
+void gemm(Op op_a, Op op_b, int m, int n, int k, const T* a, int lda, const T* b, int ldb, T* c, int ldc,
+          bool accumulate = false);
 
 }  // namespace synpo

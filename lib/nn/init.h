@@ -10,7 +10,8 @@ namespace synpo {
 // Glorot and Bengio (2010): a dense layer's weights start uniformly within this bound.
 inline double xavier_bound(int in, int out) { return std::sqrt(6.0 / (in + out)); }
 
-// Random numbers for one tensor after another, each from a stream of its own, so that a tensor's values depend on its place in the order alone.
+// Random numbers for one tensor after another, each from a stream of its own, so that a tensor's values depend on its
+// place in the order alone.
 class InitStream {
  public:
   // `group` keeps the parts of a network apart.

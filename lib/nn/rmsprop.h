@@ -1,4 +1,5 @@
-// RMSProp (Tieleman and Hinton 2012) with L2 weight decay added to the gradient, over a flat array, and clipping of a gradient's length.
+// RMSProp (Tieleman and Hinton 2012) with L2 weight decay added to the gradient, over a flat array, and clipping of a
+// gradient's length.
 #pragma once
 #include <cstddef>
 
@@ -13,7 +14,8 @@ struct RmsPropOptions {
 // One step: g = factor * gradient + weight_decay * parameter, v = smoothing * v + (1 - smoothing) * g^2,
 // parameter -= learning_rate * g / (sqrt(v) + epsilon).
 template <class T>
-void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, T factor, const T* gradient, T* parameter, T* v);
+void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t count, T factor, const T* gradient,
+                  T* parameter, T* v);
 
 // Sum of squares, in double; the same for every number of threads.
 template <class T>

@@ -24,8 +24,8 @@ ActionRates rates_of(const float* scores, bool values) {
 
 }  // namespace
 
-std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world, EnvTask pair, const GridState& state, int window,
-                                     int pictures_each) {
+std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world, EnvTask pair, const GridState& state,
+                                     int window, int pictures_each) {
   constexpr size_t kMost = Policy<float>::kInferenceUnit, kPicture = size_t(kGridCells) * kHistory;
   const Maze& maze = world.maze(pair.env);
   std::vector<uint8_t> pictures(kMost * kPicture);
@@ -42,7 +42,8 @@ std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world
       draw_history(maze, history, window, pictures.data() + i * kPicture);
     }
     policy.infer(0, int(size), pictures.data(), pair_of.data(), scores.data());
-    for (size_t i = 0; i < size; ++i) rates.push_back(rates_of(scores.data() + i * kGridActions, policy.temperature() == 0));
+    for (size_t i = 0; i < size; ++i)
+      rates.push_back(rates_of(scores.data() + i * kGridActions, policy.temperature() == 0));
   }
   return rates;
 }

@@ -20,8 +20,8 @@ WorldState episode_start(const World& world, EnvTask pair, uint64_t seed, Purpos
   return world.reset(pair.env, random);
 }
 
-Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents, const WorldStep& last,
-                         uint64_t seed, int64_t number, int window) {
+Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents,
+                         const WorldStep& last, uint64_t seed, int64_t number, int window) {
   const Environment& env = world.environments()[episode.pair.env];
   Trajectory t;
   t.world = world.name();
@@ -70,14 +70,15 @@ Episode replay(const World& world, const Trajectory& t) {
   for (const auto& [name, list] : {std::pair{"actions", &t.actions}, {"labels", &t.labels}})
     for (const uint8_t action : *list)
       if (action >= world.actions())
-        fail(Exit::kData, "field '", name, "': found '", int(action), "', expected a whole number from 0 to ", world.actions() - 1);
+        fail(Exit::kData, "field '", name, "': found '", int(action), "', expected a whole number from 0 to ",
+             world.actions() - 1);
   Episode episode = {pair, world.start_state(pair.env, t.start), t.actions, t.labels.empty() ? t.actions : t.labels};
   WorldState state = episode.start;
   for (size_t i = 0; i < t.actions.size(); ++i) {
     const WorldStep step = world.step(pair, state, t.actions[i]);
     if (step.reward_cents != t.reward_cents[i])
-      fail(Exit::kData, "replay gives reward ", money(step.reward_cents), " at step ", i + 1, ", file says ", money(t.reward_cents[i]),
-           ": other maps?");
+      fail(Exit::kData, "replay gives reward ", money(step.reward_cents), " at step ", i + 1, ", file says ",
+           money(t.reward_cents[i]), ": other maps?");
     const bool last = i + 1 == t.actions.size();
     if (step.ended() && !last) fail(Exit::kData, "replay ends at step ", i + 1, ", file goes on to ", t.actions.size());
     if (last && (step.terminated != t.terminated || step.truncated != t.truncated || step.success != t.success))

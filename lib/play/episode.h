@@ -17,24 +17,26 @@ struct Episode {
   std::vector<uint8_t> labels;  // of the same length
 };
 
-// The expert's episode number `episode` of a pair. With probability `noise` a step is a random move instead of the expert's; labels
-// stay the expert's.
+// The expert's episode number `episode` of a pair. With probability `noise` a step is a random move instead of the
+// expert's; labels stay the expert's.
 Trajectory expert_episode(const World& world, EnvTask pair, uint64_t seed, int64_t episode, double noise, int window);
 
 // The start of that episode: the same for expert and evaluation, from (seed, purpose, pair, episode) alone.
 WorldState episode_start(const World& world, EnvTask pair, uint64_t seed, Purpose purpose, int64_t episode);
 
-// Plays the trajectory again. Throws kData when env, task, rules or environment are not this world's, or rewards and end don't come out again.
+// Plays the trajectory again. Throws kData when env, task, rules or environment are not this world's, or rewards and
+// end don't come out again.
 Episode replay(const World& world, const Trajectory& trajectory);
 
 // The same trajectory with the expert's labels.
 Trajectory relabelled(const World& world, const Trajectory& trajectory);
 
 // File form of an episode that was played: `rewards` as the world gave them, `last` its last step.
-Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents, const WorldStep& last,
-                         uint64_t seed, int64_t number, int window);
+Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents,
+                         const WorldStep& last, uint64_t seed, int64_t number, int window);
 
-// Pairs by name to pairs by position; rows with seen = 0 are left out where `seen_only`. Throws kData for an unknown name.
+// Pairs by name to pairs by position; rows with seen = 0 are left out where `seen_only`. Throws kData for an unknown
+// name.
 std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only);
 
 }  // namespace synpo

@@ -7,9 +7,9 @@
 #include <mutex>
 
 #include "base/error.h"
-#include "play/running_episode.h"
 #include "nn/loss.h"
 #include "nn/softmax.h"
+#include "play/running_episode.h"
 
 namespace synpo {
 namespace {
@@ -25,7 +25,8 @@ struct Lane {
   int64_t reward_cents = 0;
 };
 
-// The best action, or one drawn from softmax(scores / temperature) where that is over 0; uniform() gives a number in [0, 1).
+// The best action, or one drawn from softmax(scores / temperature) where that is over 0; uniform() gives a number in
+// [0, 1).
 template <class Uniform>
 int choose(const float* scores, int actions, double temperature, Uniform&& uniform) {
   if (temperature == 0) return argmax(scores, actions);
@@ -45,13 +46,16 @@ void PairResult::add(const PairResult& other) {
   length += other.length;
 }
 
-std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
-                                 const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink,
+std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
+                                 const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
+                                 const EvalOptions& options, const EpisodeSink& sink,
                                  const std::function<void(size_t)>& progress) {
-  if (episodes.size() > size_t(INT32_MAX)) fail(Exit::kUsage, "found ", episodes.size(), " episodes, expected at most ", INT32_MAX);
+  if (episodes.size() > size_t(INT32_MAX))
+    fail(Exit::kUsage, "found ", episodes.size(), " episodes, expected at most ", INT32_MAX);
   // Every thread keeps its lanes filled from one list, so that batches are small at its end alone.
   const int total = int(episodes.size()), actions = world.actions(), threads = parallel.threads();
-  const size_t observation = world.observation_size(), most = size_t(std::clamp((total + threads - 1) / threads, 1, kLanes));
+  const size_t observation = world.observation_size(),
+               most = size_t(std::clamp((total + threads - 1) / threads, 1, kLanes));
   std::mutex mutex;  // of what follows
   int next = 0, done = 0, written = 0;
   std::map<int, Trajectory> waiting;  // for those before them
@@ -63,15 +67,18 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
   const auto finish = [&](const Lane& lane, const WorldStep& last) {
     const EvalEpisode& job = episodes[size_t(lane.job)];
     Trajectory trajectory;
-    if (sink) trajectory = to_trajectory(world, lane.played, lane.rewards, last, options.seed, job.number, options.window);
+    if (sink)
+      trajectory = to_trajectory(world, lane.played, lane.rewards, last, options.seed, job.number, options.window);
     std::lock_guard lock(mutex);
-    results[size_t(job.pair)].add({1, last.success, last.wrong, last.truncated, lane.reward_cents, lane.running.now().steps});
+    results[size_t(job.pair)].add(
+        {1, last.success, last.wrong, last.truncated, lane.reward_cents, lane.running.now().steps});
     ++done;
     try {
       if (progress) progress(size_t(done));
       if (!sink) return;
       waiting.emplace(lane.job, std::move(trajectory));
-      for (; !waiting.empty() && waiting.begin()->first == written; ++written) sink(waiting.extract(waiting.begin()).mapped());
+      for (; !waiting.empty() && waiting.begin()->first == written; ++written)
+        sink(waiting.extract(waiting.begin()).mapped());
     } catch (...) {
       next = total;  // the other threads need not begin what nobody will see
       throw;
@@ -88,14 +95,19 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
       if (number < 0) return false;
       const EvalEpisode& job = episodes[size_t(number)];
       const EnvTask pair = pairs[size_t(job.pair)];
-      lane = {number, {pair, episode_start(world, pair, options.seed, Purpose::kEvaluation, job.number), {}, {}}, {}, {}, 0};
+      lane = {number,
+              {pair, episode_start(world, pair, options.seed, Purpose::kEvaluation, job.number), {}, {}},
+              {},
+              {},
+              0};
       lane.running.start(pair, lane.played.start);
       return true;
     };
     for (Lane lane; lanes.size() < most && start(lane);) lanes.push_back(lane);
     while (!lanes.empty()) {
       for (size_t i = 0; i < lanes.size(); ++i) {
-        world.observe(lanes[i].running.pair.env, lanes[i].running.history, options.window, observations.data() + i * observation);
+        world.observe(lanes[i].running.pair.env, lanes[i].running.history, options.window,
+                      observations.data() + i * observation);
         pair_of[i] = episodes[size_t(lanes[i].job)].pair;
       }
       policy.infer(thread, int(lanes.size()), observations.data(), pair_of.data(), logits.data());
@@ -104,7 +116,9 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
         const EnvTask pair = lane.running.pair;
         const int action = choose(logits.data() + i * actions, actions, options.temperature, [&] {
           const int64_t number = episodes[size_t(lane.job)].number;
-          return Random(options.seed, Purpose::kSample, world.pair_number(pair), uint64_t(number) << 16 | lane.running.now().steps).uniform();
+          return Random(options.seed, Purpose::kSample, world.pair_number(pair),
+                        uint64_t(number) << 16 | lane.running.now().steps)
+              .uniform();
         });
         if (sink) {
           lane.played.labels.push_back(uint8_t(world.expert(pair, lane.running.now())));
@@ -130,8 +144,8 @@ std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, cons
   return results;
 }
 
-RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
-                                      int episodes) {
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model,
+                                      const float* parameters, const float* statistics, int episodes) {
   std::vector<bool> env_met(size_t(world.envs())), task_met(size_t(world.task_count()));
   for (const EnvTask& pair : model.seen) env_met[size_t(pair.env)] = task_met[size_t(pair.task)] = true;
   std::vector<EnvTask> groups[2];  // unseen, seen
@@ -149,8 +163,8 @@ RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, co
     for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
     model.policy->prepare_inference(parallel, parameters, statistics, pairs);
     PairResult sum;
-    for (const PairResult& result :
-         evaluate(parallel, *model.policy, world, groups[seen], jobs, {model.seed, model.window, model.policy->temperature()}))
+    for (const PairResult& result : evaluate(parallel, *model.policy, world, groups[seen], jobs,
+                                             {model.seed, model.window, model.policy->temperature()}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "format/trajectory.h"
 #include "format/run_log.h"
+#include "format/trajectory.h"
 #include "play/model.h"
 
 namespace synpo {
@@ -30,16 +30,18 @@ struct EvalOptions {
 // Called with every episode in the order of the list, one at a time, from any thread.
 using EpisodeSink = std::function<void(const Trajectory&)>;
 
-// Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the order of
-// `pairs`; neither threads nor what else is in the list changes an episode.
-std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world, const std::vector<EnvTask>& pairs,
-                                 const std::vector<EvalEpisode>& episodes, const EvalOptions& options, const EpisodeSink& sink = nullptr,
+// Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the
+// order of `pairs`; neither threads nor what else is in the list changes an episode.
+std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
+                                 const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
+                                 const EvalOptions& options, const EpisodeSink& sink = nullptr,
                                  const std::function<void(size_t done)>& progress = nullptr);
 
-// Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at random, an episode each; the same ones
-// at every call while no pair is seen that was not. Unseen are pairs of an environment and a task that other seen pairs have. NaN where there are no such
-// pairs. The weights are given apart: a run may evaluate others than those it learns with.
-RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model, const float* parameters, const float* statistics,
-                                      int episodes);
+// Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at
+// random, an episode each; the same ones at every call while no pair is seen that was not. Unseen are pairs of an
+// environment and a task that other seen pairs have. NaN where there are no such pairs. The weights are given apart: a
+// run may evaluate others than those it learns with.
+RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model,
+                                      const float* parameters, const float* statistics, int episodes);
 
 }  // namespace synpo

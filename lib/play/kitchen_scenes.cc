@@ -14,7 +14,8 @@
 namespace synpo {
 namespace {
 
-static_assert(kSceneObjects == kKitchenObjects && kSceneReceptacles == kKitchenReceptacles && kSceneDoors == kDoorStates && kSceneMoves == kKitchenMoves);
+static_assert(kSceneObjects == kKitchenObjects && kSceneReceptacles == kKitchenReceptacles &&
+              kSceneDoors == kDoorStates && kSceneMoves == kKitchenMoves);
 static_assert(kSceneFeatures == kViewFeatures && kSceneLimit == kMaxKitchenPoses);
 
 // What is in sight of distances [poses, things].
@@ -34,7 +35,8 @@ KitchenSeenLists seen_lists(const int32_t* distances, size_t poses, size_t thing
 
 // The inverse: distances [poses, things]; `thing(index)` is the column of a slot or receptacle, or -1.
 template <class Thing>
-void write_distances(const KitchenSeenLists& lists, size_t poses, size_t things, Thing thing, std::vector<int32_t>& out) {
+void write_distances(const KitchenSeenLists& lists, size_t poses, size_t things, Thing thing,
+                     std::vector<int32_t>& out) {
   for (size_t pose = 0; pose < poses; ++pose) {
     const size_t first = out.size();
     out.resize(first + things, -1);
@@ -44,20 +46,24 @@ void write_distances(const KitchenSeenLists& lists, size_t poses, size_t things,
 }
 
 void write_tables(const KitchenTables& tables, Scene& scene) {
-  for (const KitchenPose& pose : tables.poses) scene.poses.insert(scene.poses.end(), {pose.row, pose.column, pose.heading, pose.horizon});
+  for (const KitchenPose& pose : tables.poses)
+    scene.poses.insert(scene.poses.end(), {pose.row, pose.column, pose.heading, pose.horizon});
   scene.starts.assign(tables.start_poses.begin(), tables.start_poses.end());
   scene.next.assign(tables.next.begin(), tables.next.end());
 }
 
 void write_layout(const KitchenTables& tables, const ObjectSlots& slots, Scene& scene) {
-  for (const uint8_t slot : slots) scene.objects.insert(scene.objects.end(), {tables.slots[slot].row, tables.slots[slot].column});
+  for (const uint8_t slot : slots)
+    scene.objects.insert(scene.objects.end(), {tables.slots[slot].row, tables.slots[slot].column});
   for (const auto& sight : tables.sight) {
     const auto object_on = [&](int slot) {
       const auto found = std::find(slots.begin(), slots.end(), slot);
       return found == slots.end() ? -1 : int(found - slots.begin());
     };
     write_distances(sight->slots, tables.poses.size(), kKitchenObjects, object_on, scene.object_distance);
-    write_distances(sight->receptacles, tables.poses.size(), kKitchenReceptacles, [](int i) { return i; }, scene.receptacle_distance);
+    write_distances(
+        sight->receptacles, tables.poses.size(), kKitchenReceptacles, [](int i) { return i; },
+        scene.receptacle_distance);
   }
 }
 
@@ -80,7 +86,8 @@ class Rows {
     values_.resize(count * kViewFeatures);
     features_.extract(waiting_.data(), int(count), values_.data());
     for (const float value : values_) {
-      if (!(std::fabs(value) <= kHalfMax)) fail(Exit::kData, "found the feature ", value, ", expected at most ", kHalfMax);
+      if (!(std::fabs(value) <= kHalfMax))
+        fail(Exit::kData, "found the feature ", value, ", expected at most ", kHalfMax);
       const Half half = to_half(value);
       scene_.features.append(reinterpret_cast<const char*>(&half), sizeof half);
     }
@@ -99,7 +106,8 @@ class Rows {
 }  // namespace
 
 SceneKitchen to_kitchen(Scene scene) {
-  if (scene.rules != kKitchenRules) fail(Exit::kData, "rules version ", scene.rules, ", this build has ", kKitchenRules);
+  if (scene.rules != kKitchenRules)
+    fail(Exit::kData, "rules version ", scene.rules, ", this build has ", kKitchenRules);
   SceneKitchen kitchen;
   kitchen.name = scene.env;
   kitchen.hash = scene.hash();
@@ -118,18 +126,23 @@ SceneKitchen to_kitchen(Scene scene) {
       const int32_t* cell = &scene.objects[(layout * kKitchenObjects + i) * 2];
       tables.slots.push_back({int16_t(cell[0]), int16_t(cell[1])});
     }
-    const auto part = [&](const std::vector<int32_t>& all, size_t things, size_t doors) { return &all[(layout * kDoorStates + doors) * poses * things]; };
+    const auto part = [&](const std::vector<int32_t>& all, size_t things, size_t doors) {
+      return &all[(layout * kDoorStates + doors) * poses * things];
+    };
     for (size_t doors = 0; doors < kDoorStates; ++doors) {
       const auto as_closed = [&](const std::vector<int32_t>& all, size_t things) {
         return std::equal(part(all, things, doors), part(all, things, doors) + poses * things, part(all, things, 0));
       };
-      const auto lists = [&](const std::vector<int32_t>& all, size_t things) { return seen_lists(part(all, things, doors), poses, things); };
-      if (doors > 0 && as_closed(scene.object_distance, kKitchenObjects) && as_closed(scene.receptacle_distance, kKitchenReceptacles)) {
+      const auto lists = [&](const std::vector<int32_t>& all, size_t things) {
+        return seen_lists(part(all, things, doors), poses, things);
+      };
+      if (doors > 0 && as_closed(scene.object_distance, kKitchenObjects) &&
+          as_closed(scene.receptacle_distance, kKitchenReceptacles)) {
         tables.sight[doors] = tables.sight[0];
         continue;
       }
-      tables.sight[doors] = std::make_shared<KitchenSight>(
-          KitchenSight{lists(scene.object_distance, kKitchenObjects), lists(scene.receptacle_distance, kKitchenReceptacles)});
+      tables.sight[doors] = std::make_shared<KitchenSight>(KitchenSight{
+          lists(scene.object_distance, kKitchenObjects), lists(scene.receptacle_distance, kKitchenReceptacles)});
     }
     kitchen.layouts.push_back(tables);
   }
@@ -172,8 +185,8 @@ std::vector<ObjectSlots> random_layouts(const KitchenSet& world, int env, int co
   return layouts;
 }
 
-Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std::vector<ObjectSlots>& layouts, const PictureFeatures& features,
-                 const std::function<void(size_t done, size_t total)>& done) {
+Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std::vector<ObjectSlots>& layouts,
+                 const PictureFeatures& features, const std::function<void(size_t done, size_t total)>& done) {
   constexpr int kHands = kKitchenObjects + 1;
   const KitchenTables& tables = world.tables(env);
   const int poses = tables.pose_count();
@@ -203,7 +216,8 @@ Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std
         if (now.hand != kEmptyHand) now.slots[now.hand] = kNoSlot;
         features.draw(world.scene(env), world.frame(env, pack(now)), &pictures[size_t(i) * features.picture_bytes]);
       });
-      for (size_t i = 0; i < drawn.size(); ++i) scene.view[first + drawn[i]] = rows.of(&pictures[i * features.picture_bytes]);
+      for (size_t i = 0; i < drawn.size(); ++i)
+        scene.view[first + drawn[i]] = rows.of(&pictures[i * features.picture_bytes]);
       drawn.clear();
     };
     for (size_t at = 0; at < reached.size(); ++at) {

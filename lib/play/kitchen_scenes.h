@@ -9,8 +9,8 @@
 
 #include "base/parallel.h"
 #include "format/scene.h"
-#include "world/kitchen/recorded_kitchens.h"
 #include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/recorded_kitchens.h"
 
 namespace synpo {
 
@@ -26,7 +26,8 @@ struct PictureFeatures {
   std::string name;  // of the extractor
   uint64_t hash;
   size_t picture_bytes;
-  std::function<void(const KitchenScene& scene, const KitchenFrame& frame, uint8_t* picture)> draw;  // from several threads
+  std::function<void(const KitchenScene& scene, const KitchenFrame& frame, uint8_t* picture)>
+      draw;  // from several threads
   // The features [count, kViewFeatures] of pictures [count, picture_bytes].
   std::function<void(const uint8_t* pictures, int count, float* features)> extract;
 };
@@ -34,9 +35,9 @@ struct PictureFeatures {
 using ObjectSlots = std::array<uint8_t, kKitchenObjects>;
 // Layouts that differ, drawn at random; they do not depend on how many more are drawn.
 std::vector<ObjectSlots> random_layouts(const KitchenSet& world, int env, int count, uint64_t seed);
-// The scene of a kitchen with the objects on these slots; features are stored as Half. `done` is told how many of how many poses are done. Throws kData
-// for features that Half cannot hold.
-Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std::vector<ObjectSlots>& layouts, const PictureFeatures& features,
-                 const std::function<void(size_t done, size_t total)>& done);
+// The scene of a kitchen with the objects on these slots; features are stored as Half. `done` is told how many of how
+// many poses are done. Throws kData for features that Half cannot hold.
+Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std::vector<ObjectSlots>& layouts,
+                 const PictureFeatures& features, const std::function<void(size_t done, size_t total)>& done);
 
 }  // namespace synpo

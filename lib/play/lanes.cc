@@ -59,9 +59,12 @@ void Lanes::save(SafeTensors& file, const std::string& prefix) const {
 
 void Lanes::load(const SafeTensors& file, const std::string& prefix) {
   const std::vector<uint8_t> episodes = file.get<uint8_t>(prefix + "episodes");
-  const std::vector<int64_t> numbers = file.get<int64_t>(prefix + "numbers"), rewards = file.get<int64_t>(prefix + "rewards");
+  const std::vector<int64_t> numbers = file.get<int64_t>(prefix + "numbers"),
+                             rewards = file.get<int64_t>(prefix + "rewards");
   const auto bad = [&] { fail(Exit::kData, "the running episodes in the checkpoint are malformed"); };
-  if (numbers.size() != lanes_.size() || rewards.size() != lanes_.size() || episodes.size() != lanes_.size() * RunningEpisode::kBytes) bad();
+  if (numbers.size() != lanes_.size() || rewards.size() != lanes_.size() ||
+      episodes.size() != lanes_.size() * RunningEpisode::kBytes)
+    bad();
   for (size_t i = 0; i < lanes_.size(); ++i) {
     lanes_[i] = {0, {}, numbers[i], rewards[i]};
     if (numbers[i] < 1 || numbers[i] == INT64_MAX || rewards[i] < -INT32_MAX || rewards[i] > INT32_MAX) bad();

@@ -84,7 +84,8 @@ PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes) {
     const auto found = sizes.find(name);
     if (found == sizes.end()) fail(Exit::kData, "the shape has no '", name, "'");
     if (found->second < low || found->second > high)
-      fail(Exit::kData, "shape '", name, "': found ", found->second, ", expected a whole number from ", low, " to ", high);
+      fail(Exit::kData, "shape '", name, "': found ", found->second, ", expected a whole number from ", low, " to ",
+           high);
     return int(found->second);
   };
   PolicyShape shape;
@@ -96,7 +97,8 @@ PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes) {
     shape.sight = Sight::kFeatures;
     for (const ViewSizeName& size : kViewSizes) shape.views.*size.member = get(size.name, 1, kSizeLimit);
   } else {
-    for (size_t i = 0; i < shape.channels.size(); ++i) shape.channels[i] = get("channels" + std::to_string(i + 1), 1, 4096);
+    for (size_t i = 0; i < shape.channels.size(); ++i)
+      shape.channels[i] = get("channels" + std::to_string(i + 1), 1, 4096);
   }
   return shape;
 }
@@ -117,7 +119,8 @@ Model fresh_model(const std::string& method, const PolicyShape& shape, const Ini
 }
 
 bool lies_in_files(const Checkpoint& checkpoint) {
-  return std::any_of(checkpoint.envs.begin(), checkpoint.envs.end(), [](const Checkpoint::Env& env) { return env.content.empty(); });
+  return std::any_of(checkpoint.envs.begin(), checkpoint.envs.end(),
+                     [](const Checkpoint::Env& env) { return env.content.empty(); });
 }
 
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source) {
@@ -133,7 +136,8 @@ std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* sourc
   std::vector<Environment> environments;
   for (const Checkpoint::Env& env : checkpoint.envs) environments.push_back({env.name, env.hash, env.content});
   std::unique_ptr<World> world = restore_world(checkpoint.world, environments, source);
-  if (checkpoint.rules != world->rules()) fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", world->rules());
+  if (checkpoint.rules != world->rules())
+    fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", world->rules());
   if (checkpoint.tasks != world->task_names()) fail(Exit::kData, "the checkpoint's tasks are not this build's");
   return world;
 }
@@ -154,7 +158,8 @@ void check_tensors(const SafeTensors& file, const std::string& prefix, const Lay
     if (found == file.tensors.end()) fail(Exit::kData, "no tensor '", prefix, tensor.name, "'");
     const std::vector<int64_t>& shape = found->second.shape;
     if (!std::equal(shape.begin(), shape.end(), tensor.shape.begin(), tensor.shape.end()))
-      fail(Exit::kData, "tensor '", prefix, tensor.name, "': found shape ", text(shape), ", expected ", text(tensor.shape));
+      fail(Exit::kData, "tensor '", prefix, tensor.name, "': found shape ", text(shape), ", expected ",
+           text(tensor.shape));
   }
 }
 
@@ -164,7 +169,8 @@ void get_tensors(const SafeTensors& file, const std::string& prefix, const Layou
   for (const TensorInfo& tensor : layout.tensors()) {
     file.get(prefix + tensor.name, values + tensor.offset, tensor.size);
     for (size_t i = 0; i < tensor.size; ++i)
-      if (!std::isfinite(values[tensor.offset + i])) fail(Exit::kData, "tensor '", prefix, tensor.name, "' holds a value that is not finite");
+      if (!std::isfinite(values[tensor.offset + i]))
+        fail(Exit::kData, "tensor '", prefix, tensor.name, "' holds a value that is not finite");
   }
 }
 
@@ -172,11 +178,12 @@ Model load_model(const Checkpoint& checkpoint, const World& world) {
   Model model;
   model.method = checkpoint.method;
   model.shape = parse_shape(checkpoint.shape);
-  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() || model.shape.actions != world.actions() ||
-      model.shape.sight != world.sight())
+  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() ||
+      model.shape.actions != world.actions() || model.shape.sight != world.sight())
     fail(Exit::kData, "the network's shape does not fit the world");
   if (!checkpoint.extractor.empty() && checkpoint.extractor != world.extractor())
-    fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ", quoted(world.extractor()));
+    fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ",
+         quoted(world.extractor()));
   model.window = checkpoint.window;
   model.seed = checkpoint.seed;
   model.updates = checkpoint.updates;
@@ -186,9 +193,12 @@ Model load_model(const Checkpoint& checkpoint, const World& world) {
   model.seen = resolve_pairs(world, rows, false);
   model.policy = make_policy(model.method, model.shape);
   // Before memory is taken for what a file only claims to hold.
-  for (const Layout* layout : {&model.policy->parameters(), &model.policy->statistics()}) check_tensors(checkpoint.file, "", *layout);
-  get_tensors(checkpoint.file, "", model.policy->parameters(), model.parameters.grow(model.policy->parameters().total()));
-  get_tensors(checkpoint.file, "", model.policy->statistics(), model.statistics.grow(model.policy->statistics().total()));
+  for (const Layout* layout : {&model.policy->parameters(), &model.policy->statistics()})
+    check_tensors(checkpoint.file, "", *layout);
+  get_tensors(checkpoint.file, "", model.policy->parameters(),
+              model.parameters.grow(model.policy->parameters().total()));
+  get_tensors(checkpoint.file, "", model.policy->statistics(),
+              model.statistics.grow(model.policy->statistics().total()));
   return model;
 }
 
@@ -201,7 +211,8 @@ Checkpoint describe_model(const Model& model, const World& world) {
   c.window = model.window;
   for (const Environment& env : world.environments()) c.envs.push_back({env.name, env.hash, env.content});
   c.tasks = world.task_names();
-  for (const EnvTask& pair : model.seen) c.seen.emplace_back(world.environments()[pair.env].name, world.task_names()[pair.task]);
+  for (const EnvTask& pair : model.seen)
+    c.seen.emplace_back(world.environments()[pair.env].name, world.task_names()[pair.task]);
   c.shape = describe_shape(model.shape);
   c.updates = model.updates;
   c.states = model.states;

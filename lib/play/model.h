@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "format/checkpoint.h"
-#include "play/episode.h"
 #include "nn/buffer.h"
+#include "play/episode.h"
 #include "policy/policy.h"
 #include "world/world.h"
 
@@ -38,16 +38,17 @@ Model fresh_model(const std::string& method, const PolicyShape& shape, const Ini
 
 // Whether some of its environments lie in files of their own.
 bool lies_in_files(const Checkpoint& checkpoint);
-// The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where they are not there, are other
-// ones, or don't fit this build, kUsage where there is no source.
+// The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where
+// they are not there, are other ones, or don't fit this build, kUsage where there is no source.
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source = nullptr);
-// The same with the argument of -w, which may be empty. Throws kUsage where a checkpoint that holds its environments is given one.
+// The same with the argument of -w, which may be empty. Throws kUsage where a checkpoint that holds its environments is
+// given one.
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source);
 // Throws kData when tensors or world don't fit, or features come from another extractor.
 Model load_model(const Checkpoint& checkpoint, const World& world);
 
-// Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back, where all are there and have their shapes:
-// kData otherwise.
+// Puts an array laid out as `layout` into the file, a tensor each, names with `prefix` in front; and back, where all
+// are there and have their shapes: kData otherwise.
 void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values);
 void check_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout);
 void get_tensors(const SafeTensors& file, const std::string& prefix, const Layout& layout, float* values);

@@ -29,7 +29,8 @@ bool RunningEpisode::load(const World& world, const uint8_t* from) {
   pair.env = take(from);
   pair.task = take(from);
   history.count = *from++;
-  if (pair.env >= world.envs() || pair.task >= world.task_count() || history.count < 1 || history.count > kHistory) return false;
+  if (pair.env >= world.envs() || pair.task >= world.task_count() || history.count < 1 || history.count > kHistory)
+    return false;
   for (int i = 0; i < kHistory; ++i) {
     WorldState& state = history.states[i];
     std::copy_n(from, state.bytes.size(), state.bytes.begin());

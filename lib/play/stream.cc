@@ -5,7 +5,8 @@
 namespace synpo {
 
 TrajectoryStream::TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window)
-    : input_(input), world_(world), seen_(std::move(seen)), allowed_(size_t(world.envs()) * world.task_count(), seen_.empty()), window_(window) {
+    : input_(input), world_(world), seen_(std::move(seen)),
+      allowed_(size_t(world.envs()) * world.task_count(), seen_.empty()), window_(window) {
   for (const EnvTask& pair : seen_) allowed_[world.pair_number(pair)] = true;
 }
 
@@ -20,7 +21,8 @@ std::optional<Episode> TrajectoryStream::next() {
     if (!allowed_[world_.pair_number(episode.pair)])
       fail(Exit::kData, "pair ", trajectory.env, ", ", trajectory.task, " is not in the seen set");
     if (window_ < 0) window_ = trajectory.window;
-    if (trajectory.window != window_) fail(Exit::kData, "window ", trajectory.window, ", expected ", window_, " as in the trajectories before");
+    if (trajectory.window != window_)
+      fail(Exit::kData, "window ", trajectory.window, ", expected ", window_, " as in the trajectories before");
     ++lines_;
     hash_.add(line_).add("\n");
     return episode;
@@ -38,7 +40,8 @@ uint64_t TrajectoryStream::length_up_to(uint64_t lines) {
 void TrajectoryStream::skip(uint64_t lines, uint64_t hash) {
   for (; lines_ < lines; ++lines_) {
     if (!input_.line(line_))
-      fail(Exit::kData, input_.name(), ": it ends at line ", lines_, ", but the checkpoint has read ", lines, " lines: another stream?");
+      fail(Exit::kData, input_.name(), ": it ends at line ", lines_, ", but the checkpoint has read ", lines,
+           " lines: another stream?");
     hash_.add(line_).add("\n");
   }
   if (hash_.value() != hash)

@@ -4,16 +4,16 @@
 #include <string>
 #include <vector>
 
-#include "base/hash.h"
 #include "base/files/io.h"
+#include "base/hash.h"
 #include "play/episode.h"
 
 namespace synpo {
 
 class TrajectoryStream {
  public:
-  // Trajectories of pairs outside `seen` are refused (an empty list takes all). The window of the first is that of all; -1 lets the first
-  // decide.
+  // Trajectories of pairs outside `seen` are refused (an empty list takes all). The window of the first is that of all;
+  // -1 lets the first decide.
   TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window = -1);
 
   // The next trajectory; nothing at the end. Errors are kData with the line.

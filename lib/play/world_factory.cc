@@ -25,13 +25,17 @@ auto parse_all(const std::vector<Environment>& environments, Parse parse) {
 std::unique_ptr<World> choose_scenes(const std::vector<Environment>& environments, const World* source) {
   if (!source) fail(Exit::kUsage, "the kitchens lie in files of their own: name their folder with -w kitchen:DIR");
   const SceneKitchens* scenes = dynamic_cast<const SceneKitchens*>(source);
-  if (!scenes) fail(Exit::kUsage, "the kitchens lie in files of their own: expected -w kitchen:DIR, found the built-in ", quoted(source->name()));
+  if (!scenes)
+    fail(Exit::kUsage, "the kitchens lie in files of their own: expected -w kitchen:DIR, found the built-in ",
+         quoted(source->name()));
   std::vector<int> chosen;
   for (const Environment& env : environments) {
     const int found = scenes->env_index(env.name);
     if (found < 0) fail(Exit::kData, "env ", quoted(env.name), ": no scene of that name in the folder");
     const uint64_t hash = scenes->environments()[size_t(found)].hash;
-    if (hash != env.hash) fail(Exit::kData, "env ", quoted(env.name), ": found a scene with hash ", hex(hash), ", expected ", hex(env.hash));
+    if (hash != env.hash)
+      fail(Exit::kData, "env ", quoted(env.name), ": found a scene with hash ", hex(hash), ", expected ",
+           hex(env.hash));
     chosen.push_back(found);
   }
   return std::make_unique<SceneKitchens>(*scenes, chosen);
@@ -47,10 +51,12 @@ std::unique_ptr<World> open_world(const std::string& name) {
   fail(Exit::kUsage, "unknown world ", quoted(name), ", expected ", kWorldNames);
 }
 
-std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments, const World* source) {
+std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments,
+                                     const World* source) {
   if (name == "gridworld") return std::make_unique<GridSet>(parse_all(environments, parse_maze));
   if (name != "kitchen") fail(Exit::kData, "world ", quoted(name), ", this build has gridworld and kitchen");
-  const bool in_files = std::any_of(environments.begin(), environments.end(), [](const Environment& env) { return env.content.empty(); });
+  const bool in_files =
+      std::any_of(environments.begin(), environments.end(), [](const Environment& env) { return env.content.empty(); });
   if (in_files) return choose_scenes(environments, source);
   return std::make_unique<KitchenSet>(parse_all(environments, parse_kitchen));
 }

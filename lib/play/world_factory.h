@@ -13,8 +13,9 @@ constexpr char kWorldNames[] = "gridworld, gridworld:DIR, kitchen or kitchen:DIR
 // The world of one of these names on the command line. Throws kUsage for another, kData and kNoInput
 // for what is wrong with its files.
 std::unique_ptr<World> open_world(const std::string& name);
-// A world by its name() from environments() as a file has kept them; those without content are taken from `source` by their names. Throws kData where
-// content is malformed, or where hashes differ, and kUsage where there is no source.
-std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments, const World* source = nullptr);
+// A world by its name() from environments() as a file has kept them; those without content are taken from `source` by
+// their names. Throws kData where content is malformed, or where hashes differ, and kUsage where there is no source.
+std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments,
+                                     const World* source = nullptr);
 
 }  // namespace synpo

@@ -13,19 +13,20 @@
 
 namespace synpo {
 
-// How SF's successor features are learned: temporal differences along the expert, the planner's Q, or cross-entropy of Q as scores.
+// How SF's successor features are learned: temporal differences along the expert, the planner's Q, or cross-entropy of
+// Q as scores.
 enum class SfLoss { kTemporalDifference, kPlannerQ, kCrossEntropy };
 
 // Sizes of a policy (supplement, Section 4.1). The defaults are the paper's for GridWorld.
 struct PolicyShape {
   Sight sight = Sight::kPictures;
-  TemporalSizes views;  // where sight is of features
+  TemporalSizes views;                             // where sight is of features
   std::vector<int> channels = {32, 64, 128, 256};  // of the four stages of Table 2
   int envs = 20, tasks = 20, actions = 5;
-  int feature = 128;    // d, of psi(s)
-  int basis = 128;      // K
-  int embedding = 128;  // of e_env and e_task
-  int hidden = 512;     // of alpha, beta, f_env and f_task
+  int feature = 128;         // d, of psi(s)
+  int basis = 128;           // K
+  int embedding = 128;       // of e_env and e_task
+  int hidden = 512;          // of alpha, beta, f_env and f_task
   int action_embedding = 0;  // D of phi(a), general form; 0: the direct form
   int head_hidden = 1024;    // hidden units of the baselines' heads
   int seam = 32;             // ModuleNet: what a task's module hands to an environment's
@@ -56,8 +57,8 @@ struct Losses {
   }
 };
 
-// A loss of the scores other than imitation's, for a batch of n states: psi [n, feature], logits and dlogits [n, actions]. Sets dlogits, may add to
-// dpsi, and returns the loss.
+// A loss of the scores other than imitation's, for a batch of n states: psi [n, feature], logits and dlogits [n,
+// actions]. Sets dlogits, may add to dpsi, and returns the loss.
 template <class T>
 class Objective {
  public:
@@ -80,10 +81,11 @@ struct StepBatch {
   static constexpr int kTerminal = -1;  // nothing comes behind it
   static constexpr int kUnknown = -2;   // it is not in the batch
   const int* next = nullptr;
-  const T* planner_q = nullptr;  // [size, actions], undiscounted return of each action under the planner
+  const T* planner_q = nullptr;       // [size, actions], undiscounted return of each action under the planner
   Objective<T>* objective = nullptr;  // instead of imitation's loss
   bool frozen_statistics = false;     // normalisation by the running statistics, which then stay
-  const T* psi = nullptr;             // [size, feature], instead of observations; the encoder then is left alone, and its gradient as it was
+  const T* psi =
+      nullptr;  // [size, feature], instead of observations; the encoder then is left alone, and its gradient as it was
 };
 
 // What a method wants of a batch beyond the steps themselves.
@@ -91,8 +93,8 @@ struct BatchNeeds {
   bool next = false, planner_q = false;
 };
 
-// The temperature that a policy acts at where nothing else is said: with the best action alone, one that has learned most of its moves still
-// walks in circles where it has not.
+// The temperature that a policy acts at where nothing else is said: with the best action alone, one that has learned
+// most of its moves still walks in circles where it has not.
 constexpr double kTemperature = 0.5;
 
 template <class T>
@@ -101,26 +103,27 @@ class Policy {
   virtual ~Policy() = default;
   const Layout& parameters() const { return parameters_; }
   const Layout& statistics() const { return statistics_; }  // running statistics of batch normalisation
-  virtual size_t observation_size() const = 0;  // bytes of a state
+  virtual size_t observation_size() const = 0;              // bytes of a state
   virtual BatchNeeds needs() const { return {}; }
   // See kTemperature; 0 where scores are values, whose best action is taken.
   virtual double temperature() const { return kTemperature; }
 
   virtual void initialise(const InitOptions& options, T* parameters, T* statistics) const = 0;
 
-  // Forward and backward on a batch. `gradient` is overwritten; `logits` [size, actions] receives the policy's scores. Running
-  // statistics move. Bits do not depend on the number of threads.
-  virtual Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
-                      T* gradient, T* logits) = 0;
+  // Forward and backward on a batch. `gradient` is overwritten; `logits` [size, actions] receives the policy's scores.
+  // Running statistics move. Bits do not depend on the number of threads.
+  virtual Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                      T* statistics, T* gradient, T* logits) = 0;
 
   // Takes over parameters for infer(). `pairs` are the (env, task) that will be asked for, numbered as they come.
   virtual void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
                                  const std::vector<std::pair<int, int>>& pairs) = 0;
-  // Scores [size, actions] of states, state i of pair number pair[i], with frozen statistics. One thread's part: `thread` picks
-  // its scratch memory. At most kInferenceUnit states.
+  // Scores [size, actions] of states, state i of pair number pair[i], with frozen statistics. One thread's part:
+  // `thread` picks its scratch memory. At most kInferenceUnit states.
   static constexpr int kInferenceUnit = 64;
   // psi [size, feature] is given where asked for.
-  virtual void infer(int thread, int size, const uint8_t* observations, const int* pair, T* logits, T* psi = nullptr) = 0;
+  virtual void infer(int thread, int size, const uint8_t* observations, const int* pair, T* logits,
+                     T* psi = nullptr) = 0;
 
  protected:
   Layout parameters_, statistics_;

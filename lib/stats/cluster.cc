@@ -7,8 +7,8 @@ namespace synpo {
 namespace {
 
 struct Cluster {
-  size_t node;    // leaf or merge
-  size_t row;     // of the distances; its lowest leaf
+  size_t node;  // leaf or merge
+  size_t row;   // of the distances; its lowest leaf
   size_t leaves;
   double weight;  // sum
   double mean() const { return weight / double(leaves); }
@@ -53,7 +53,8 @@ Dendrogram average_linkage(std::vector<double> distances, const std::vector<doub
     tree.merges.push_back({a_first ? a.node : b.node, a_first ? b.node : a.node, height});
     for (const Cluster& other : clusters)
       if (other.row != a.row && other.row != b.row) {
-        const double mean = (double(a.leaves) * distance(a, other) + double(b.leaves) * distance(b, other)) / double(a.leaves + b.leaves);
+        const double mean = (double(a.leaves) * distance(a, other) + double(b.leaves) * distance(b, other)) /
+                            double(a.leaves + b.leaves);
         distance(a, other) = distance(other, a) = mean;
       }
     a = {n + tree.merges.size() - 1, a.row, a.leaves + b.leaves, a.weight + b.weight};

@@ -18,9 +18,10 @@ struct Dendrogram {
   std::vector<size_t> order() const;
 };
 
-// Average linkage (UPGMA; Sokal and Michener 1958): the two clusters whose members are nearest on average are merged, and so on. Of
-// merges equally near the one that holds the lowest leaf comes first. The first branch is the one with the higher mean of `weights`, else
-// the one that holds the lower leaf. `distances` [n, n] is symmetric, without NaN; n >= 1.
+// Average linkage (UPGMA; Sokal and Michener 1958): the two clusters whose members are nearest on average are merged,
+// and so on. Of merges equally near the one that holds the lowest leaf comes first. The first branch is the one with
+// the higher mean of `weights`, else the one that holds the lower leaf. `distances` [n, n] is symmetric, without NaN; n
+// >= 1.
 Dendrogram average_linkage(std::vector<double> distances, const std::vector<double>& weights);
 
 }  // namespace synpo

@@ -25,7 +25,8 @@ MeanCurve mean_curve(const std::vector<Curve>& runs, Band band) {
     out.longest = std::max(out.longest, run.x.back());
     out.x.insert(out.x.end(), run.x.begin(), run.x.end());
   }
-  if (first > last) fail(Exit::kData, "the runs have no stretch in common: one begins at ", first, ", another ends at ", last);
+  if (first > last)
+    fail(Exit::kData, "the runs have no stretch in common: one begins at ", first, ", another ends at ", last);
   std::sort(out.x.begin(), out.x.end());
   out.x.erase(std::unique(out.x.begin(), out.x.end()), out.x.end());
   std::erase_if(out.x, [&](double x) { return x < first || x > last; });

@@ -21,8 +21,9 @@ struct MeanCurve {
   double longest = 0;  // the last x of the longest run; the mean ends with the shortest
 };
 
-// The mean at every x of any run, where all runs have values. kSd is the standard deviation with divisor runs - 1 to either side,
-// kRange reaches from the lowest run to the highest. No curve may be empty. Throws kData where the runs have no x in common.
+// The mean at every x of any run, where all runs have values. kSd is the standard deviation with divisor runs - 1 to
+// either side, kRange reaches from the lowest run to the highest. No curve may be empty. Throws kData where the runs
+// have no x in common.
 MeanCurve mean_curve(const std::vector<Curve>& runs, Band band);
 
 }  // namespace synpo

@@ -32,7 +32,8 @@ std::vector<double> distances(const std::vector<double>& values, int rows, int c
     for (int b = 0; b < a; ++b) {
       const double* first = values.data() + size_t(a) * columns;
       const double* second = values.data() + size_t(b) * columns;
-      out[size_t(a) * rows + b] = out[size_t(b) * rows + a] = (kind == Distance::kCosine ? cosine : euclidean)(first, second, columns);
+      out[size_t(a) * rows + b] = out[size_t(b) * rows + a] =
+          (kind == Distance::kCosine ? cosine : euclidean)(first, second, columns);
     }
   return out;
 }

@@ -12,7 +12,8 @@ Interval wilson(int64_t k, int64_t n, double z) {
   const double centre = rate + z2n / 2;
   const double half = z * std::sqrt(rate * (1 - rate) / double(n) + z2n / double(n) / 4);
   // At k = 0 and k = n one end is 0 or 1 exactly; rounding must not hide that.
-  return {k == 0 ? 0 : std::max(0.0, (centre - half) / (1 + z2n)), k == n ? 1 : std::min(1.0, (centre + half) / (1 + z2n))};
+  return {k == 0 ? 0 : std::max(0.0, (centre - half) / (1 + z2n)),
+          k == n ? 1 : std::min(1.0, (centre + half) / (1 + z2n))};
 }
 
 Interval newcombe(int64_t k1, int64_t n1, int64_t k2, int64_t n2, double z) {

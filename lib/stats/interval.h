@@ -15,8 +15,8 @@ constexpr double kNormal95 = 1.959963984540054;  // the normal distribution's 97
 //   (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n),  p = k/n
 Interval wilson(int64_t k, int64_t n, double z = kNormal95);
 
-// Newcombe's hybrid score interval (1998, method 10) for the difference p1 - p2 of the rates behind k1 of n1 and k2 of n2, made of
-// Wilson's intervals l to u of each:
+// Newcombe's hybrid score interval (1998, method 10) for the difference p1 - p2 of the rates behind k1 of n1 and k2 of
+// n2, made of Wilson's intervals l to u of each:
 //   d - sqrt((p1 - l1)^2 + (u2 - p2)^2)  to  d + sqrt((u1 - p1)^2 + (p2 - l2)^2),  d = p1 - p2
 // The trials of one are taken as independent of those of the other. n1, n2 > 0.
 Interval newcombe(int64_t k1, int64_t n1, int64_t k2, int64_t n2, double z = kNormal95);
@@ -28,12 +28,12 @@ struct MeanSd {
 };
 MeanSd mean_sd(const std::vector<double>& values);
 
-// Mean of the values that are left when a quarter of them, rounded down, is taken away at either end (Agarwal et al. 2021; a
-// trimmed mean of 25 %). NaN for no values or where one is NaN.
+// Mean of the values that are left when a quarter of them, rounded down, is taken away at either end (Agarwal et al.
+// 2021; a trimmed mean of 25 %). NaN for no values or where one is NaN.
 double interquartile_mean(std::vector<double> values);
 
-// The q-quantile with linear interpolation between order statistics (Hyndman and Fan's type 7, the default of R and NumPy).
-// `sorted` is in rising order and not empty; q in [0, 1].
+// The q-quantile with linear interpolation between order statistics (Hyndman and Fan's type 7, the default of R and
+// NumPy). `sorted` is in rising order and not empty; q in [0, 1].
 double quantile(const std::vector<double>& sorted, double q);
 
 }  // namespace synpo

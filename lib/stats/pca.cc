@@ -9,7 +9,8 @@ Pca principal_components(const std::vector<double>& values, int rows, int column
   using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Matrix centred = Eigen::Map<const Matrix>(values.data(), rows, columns);
   centred.rowwise() -= centred.colwise().mean().eval();
-  const Eigen::JacobiSVD<Matrix, Eigen::HouseholderQRPreconditioner> svd(centred, Eigen::ComputeThinU | Eigen::ComputeThinV);
+  const Eigen::JacobiSVD<Matrix, Eigen::HouseholderQRPreconditioner> svd(centred,
+                                                                         Eigen::ComputeThinU | Eigen::ComputeThinV);
   const auto& singular = svd.singularValues();
   const double variance = singular.squaredNorm();
 
@@ -23,7 +24,8 @@ Pca principal_components(const std::vector<double>& values, int rows, int column
     axis.cwiseAbs().maxCoeff(&largest);
     const double sign = axis(largest) < 0 ? -1 : 1;
     for (int column = 0; column < columns; ++column) out.axes[size_t(k) * columns + column] = sign * axis(column);
-    for (int row = 0; row < rows; ++row) out.scores[size_t(row) * components + k] = sign * svd.matrixU()(row, k) * singular(k);
+    for (int row = 0; row < rows; ++row)
+      out.scores[size_t(row) * components + k] = sign * svd.matrixU()(row, k) * singular(k);
     out.explained[k] = variance > 0 ? singular(k) * singular(k) / variance : 0;
   }
   return out;

@@ -10,8 +10,9 @@ struct Pca {
   std::vector<double> explained;  // [components]: share of the variance, 0 to 1; 0 where there is none
 };
 
-// Of `values` [rows, columns], by the singular values of the centred table; the components that explain most come first. An axis points
-// where its entry of the largest size (the first of them) is positive. Where there are fewer components than asked for, the rest is zero.
+// Of `values` [rows, columns], by the singular values of the centred table; the components that explain most come
+// first. An axis points where its entry of the largest size (the first of them) is positive. Where there are fewer
+// components than asked for, the rest is zero.
 Pca principal_components(const std::vector<double>& values, int rows, int columns, int components);
 
 }  // namespace synpo

@@ -1,5 +1,5 @@
-// A world as the rooms behind this one see it: environments and tasks, rules, an expert, and what the agent sees. GridWorld (grid_set.h) and the
-// kitchens (kitchen_set.h, kitchen_scene.h) are two.
+// A world as the rooms behind this one see it: environments and tasks, rules, an expert, and what the agent sees.
+// GridWorld (grid_set.h) and the kitchens (kitchen_set.h, kitchen_scene.h) are two.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -27,7 +27,7 @@ struct WorldState {
 };
 
 struct WorldStep {
-  int reward_cents;  // hundredths, so that rewards add up exactly
+  int reward_cents;                            // hundredths, so that rewards add up exactly
   bool terminated, truncated, success, wrong;  // wrong: ended by a wrong object or place
   bool ended() const { return terminated || truncated; }
 };
@@ -56,7 +56,8 @@ constexpr int kStepKinds = 4;
 // What an observation is made of, which decides the encoder.
 enum class Sight : uint8_t {
   kPictures,  // uint8 [16, 16, history] of colour indices, oldest first (view.h)
-  kFeatures   // float [history, kViewFeatures] of views, oldest first, and kHandFloats more: the number of the object in the hand, then zeros
+  kFeatures  // float [history, kViewFeatures] of views, oldest first, and kHandFloats more: the number of the object in
+             // the hand, then zeros
 };
 constexpr int kViewFeatures = 2048, kHandFloats = 16;
 
@@ -91,7 +92,8 @@ class World {
   virtual bool at_choice(EnvTask pair, const WorldState& state) const = 0;
 
   virtual Sight sight() const = 0;
-  // What made the features, "name@hash": a policy goes with features of one extractor alone. Empty where observations are pictures.
+  // What made the features, "name@hash": a policy goes with features of one extractor alone. Empty where observations
+  // are pictures.
   virtual std::string extractor() const { return ""; }
   virtual size_t observation_size() const = 0;  // bytes
   // `window` is the radius of what is seen, where the world has one.

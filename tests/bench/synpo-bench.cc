@@ -2,14 +2,15 @@
 //   synpo-bench rows                     TSV rows name, value, unit of everything but the step
 //   synpo-bench methods                  the rows of these that compare methods, and those of the head
 //   synpo-bench train|forward B THREADS  states per second of the Table 2 network at batch B
-//   synpo-bench kitchen B THREADS        the training step of the kitchens' network, that of Table 3, on random features
-//   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
+//   synpo-bench kitchen B THREADS        the training step of the kitchens' network, that of Table 3, on random
+//   features synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from
+//   them
 //
 // world_steps_per_s and kitchen_steps_per_s are steps of the two worlds, with what the agent sees at each, on one core.
 // train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
-// head_FORM_ACTIONS_train and _infer are the bilinear head alone, d = K = 128, 512 states of 144 pairs. `direct` composes A d K a pair and
-// scores with A d a state; `general`, with phi(a) of D = 32, composes D d K and scores with D d + A D. Training is forward and backward, inference
-// what is left when the pairs are composed.
+// head_FORM_ACTIONS_train and _infer are the bilinear head alone, d = K = 128, 512 states of 144 pairs. `direct`
+// composes A d K a pair and scores with A d a state; `general`, with phi(a) of D = 32, composes D d K and scores with D
+// d + A D. Training is forward and backward, inference what is left when the pairs are composed.
 #include <Eigen/Core>
 #include <algorithm>
 #include <cstdio>
@@ -21,16 +22,16 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "play/episode.h"
-#include "play/model.h"
-#include "play/world_factory.h"
 #include "learn/ppo.h"
 #include "learn/recipe.h"
-#include "play/running_episode.h"
 #include "learn/steps.h"
 #include "nn/adam.h"
-#include "nn/layers/conv.h"
 #include "nn/gemm.h"
+#include "nn/layers/conv.h"
+#include "play/episode.h"
+#include "play/model.h"
+#include "play/running_episode.h"
+#include "play/world_factory.h"
 #include "policy/method/synpo.h"
 #include "world/grid/grid_set.h"
 #include "world/grid/view.h"
@@ -47,8 +48,8 @@ struct RandomBatch {
   StepBatch<float> batch;
 
   RandomBatch(int n, const PolicyShape& shape, size_t observation_size)
-      : observations(n * observation_size), env(n), task(n), label(n), taken(n), next(n, StepBatch<float>::kTerminal), reward(n),
-        planner_q(size_t(n) * shape.actions, 1.0f) {
+      : observations(n * observation_size), env(n), task(n), label(n), taken(n), next(n, StepBatch<float>::kTerminal),
+        reward(n), planner_q(size_t(n) * shape.actions, 1.0f) {
     for (int i = 0; i < n; ++i) {
       Random random(1, Purpose::kEpisodeStart, 0, i);
       env[i] = int(random.below(uint32_t(shape.envs)));
@@ -64,7 +65,8 @@ struct RandomBatch {
       else
         draw_features(shape.views, random, observation);
     }
-    batch = {n, observations.data(), env.data(), task.data(), label.data(), taken.data(), reward.data(), 1, 0, next.data(), planner_q.data()};
+    batch = {n, observations.data(), env.data(),      task.data(), label.data(), taken.data(), reward.data(), 1,
+             0, next.data(),         planner_q.data()};
   }
 
  private:
@@ -102,7 +104,8 @@ double rate(int states, double limit_s, Work&& work) {
   return rates[rates.size() / 2];
 }
 
-double network_rate(bool train, int n, int threads, double limit_s = 4, const std::string& method = "synpo", const char* world = "gridworld") {
+double network_rate(bool train, int n, int threads, double limit_s = 4, const std::string& method = "synpo",
+                    const char* world = "gridworld") {
   Parallel parallel(threads);
   const std::unique_ptr<World> opened = open_world(world);
   const ImitationOptions options = recipe(kDefaultRecipe, method, opened->sight());
@@ -110,7 +113,8 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
   const std::unique_ptr<Policy<float>> made = make_policy(method, shape);
   Policy<float>& policy = *made;
   const size_t count = policy.parameters().total();
-  Buffer<float> parameters(count), statistics(policy.statistics().total()), gradient(count), m(count), v(count), logits(size_t(n) * shape.actions);
+  Buffer<float> parameters(count), statistics(policy.statistics().total()), gradient(count), m(count), v(count),
+      logits(size_t(n) * shape.actions);
   policy.initialise({}, parameters.data(), statistics.data());
   m.zero();
   v.zero();
@@ -118,7 +122,8 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
   int64_t step = 0;
   if (train)
     return rate(n, limit_s, [&] {
-      policy.step(parallel, data.batch, options.losses(), parameters.data(), statistics.data(), gradient.data(), logits.data());
+      policy.step(parallel, data.batch, options.losses(), parameters.data(), statistics.data(), gradient.data(),
+                  logits.data());
       adam_step(parallel, {}, ++step, count, gradient.data(), parameters.data(), m.data(), v.data());
     });
   std::vector<std::pair<int, int>> pairs;
@@ -130,8 +135,8 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
   return rate(n, limit_s, [&] {
     parallel.run(shard_count(n, kUnit), [&](int shard, int thread) {
       const Range range = shard_range(n, kUnit, shard);
-      policy.infer(thread, range.size(), data.observations.data() + range.begin * policy.observation_size(), pair.data() + range.begin,
-                   logits.data() + size_t(range.begin) * shape.actions);
+      policy.infer(thread, range.size(), data.observations.data() + range.begin * policy.observation_size(),
+                   pair.data() + range.begin, logits.data() + size_t(range.begin) * shape.actions);
     });
   });
 }
@@ -182,7 +187,8 @@ double trajectory_rate() {
   size_t bytes = 0;
   return rate(1000, 2, [&] {
     for (int i = 0; i < 1000; ++i, ++episode)
-      bytes += format_trajectory(expert_episode(world, {int(episode % 20), int(episode / 20 % 20)}, 1, episode, 0, 1)).size();
+      bytes += format_trajectory(expert_episode(world, {int(episode % 20), int(episode / 20 % 20)}, 1, episode, 0, 1))
+                   .size();
   });
 }
 
@@ -191,13 +197,16 @@ double eigen_rate(int threads) {
   constexpr int kRows = 512, kSide = 256;
   using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Parallel parallel(threads);
-  std::vector<Matrix> a(threads, Matrix::Random(kRows, kSide)), b(threads, Matrix::Random(kSide, kSide)), c(threads, Matrix(kRows, kSide));
+  std::vector<Matrix> a(threads, Matrix::Random(kRows, kSide)), b(threads, Matrix::Random(kSide, kSide)),
+      c(threads, Matrix(kRows, kSide));
   constexpr int kRepeats = 64;
-  return rate(threads * kRepeats, 3, [&] {
-           parallel.run(threads, [&](int shard, int) {
-             for (int i = 0; i < kRepeats; ++i) c[shard].noalias() = a[shard] * b[shard];
-           });
-         }) * kRows * kSide * kSide;
+  return rate(threads * kRepeats, 3,
+              [&] {
+                parallel.run(threads, [&](int shard, int) {
+                  for (int i = 0; i < kRepeats; ++i) c[shard].noalias() = a[shard] * b[shard];
+                });
+              }) *
+         kRows * kSide * kSide;
 }
 
 // The same of our own product, the right matrix packed as a weight is.
@@ -209,14 +218,18 @@ double product_rate(int threads) {
   std::vector<std::vector<float>> c(threads, std::vector<float>(kRows * kSide));
   for (Packed<float>& packed : b) packed.pack(Op::kAsIs, kSide, kSide, values.data(), kSide);
   constexpr int kRepeats = 64;
-  return rate(threads * kRepeats, 3, [&] {
-           parallel.run(threads, [&](int shard, int) {
-             for (int i = 0; i < kRepeats; ++i) gemm(Op::kAsIs, kRows, values.data(), kSide, b[shard], c[shard].data(), kSide);
-           });
-         }) * kRows * kSide * kSide;
+  return rate(threads * kRepeats, 3,
+              [&] {
+                parallel.run(threads, [&](int shard, int) {
+                  for (int i = 0; i < kRepeats; ++i)
+                    gemm(Op::kAsIs, kRows, values.data(), kSide, b[shard], c[shard].data(), kSide);
+                });
+              }) *
+         kRows * kSide * kSide;
 }
 
-// States a second drawn for training as the fast recipe does it: worlds, planner, replay memory and pictures, without the network.
+// States a second drawn for training as the fast recipe does it: worlds, planner, replay memory and pictures, without
+// the network.
 double draw_rate(int threads) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(threads);
@@ -232,11 +245,13 @@ double draw_rate(int threads) {
   });
 }
 
-// Multiply-adds that one state's training step executes in matrix products: forward, and twice that backward but for the input's gradient.
+// Multiply-adds that one state's training step executes in matrix products: forward, and twice that backward but for
+// the input's gradient.
 double step_multiply_adds() {
   const PolicyShape shape;
   const SynPo<float> policy(shape);
-  const double recognisers = 2.0 * (shape.basis * shape.hidden + shape.hidden * shape.embedding) + shape.embedding * (shape.envs + shape.tasks);
+  const double recognisers = 2.0 * (shape.basis * shape.hidden + shape.hidden * shape.embedding) +
+                             shape.embedding * (shape.envs + shape.tasks);
   const double first_block = Conv<float>(kGridSide, kViewChannels, shape.channels[0], 3, 2).multiply_adds() +
                              Conv<float>(kGridSide, kViewChannels, shape.channels[0], 1, 2).multiply_adds();
   return 3.0 * (policy.encoder().multiply_adds() + recognisers + shape.feature * shape.basis) - first_block;
@@ -246,9 +261,10 @@ double step_multiply_adds() {
 class Head {
  public:
   Head(int actions, int action_embedding, int threads)
-      : parallel_(threads), form_(actions, kFeature, kBasis, action_embedding, layout_), parameters_(layout_.total()), gradient_(layout_.total()),
-        w_(kPairs * form_.matrix_size()), dw_(kPairs * form_.matrix_size()), q_(kStates * form_.columns()), dq_(kStates * form_.columns()),
-        scores_(size_t(kStates) * actions), psi_(kStates * kFeature, 0.5f), dpsi_(psi_.size()), coefficients_(kPairs * kBasis, 0.1f),
+      : parallel_(threads), form_(actions, kFeature, kBasis, action_embedding, layout_), parameters_(layout_.total()),
+        gradient_(layout_.total()), w_(kPairs * form_.matrix_size()), dw_(kPairs * form_.matrix_size()),
+        q_(kStates * form_.columns()), dq_(kStates * form_.columns()), scores_(size_t(kStates) * actions),
+        psi_(kStates * kFeature, 0.5f), dpsi_(psi_.size()), coefficients_(kPairs * kBasis, 0.1f),
         dcoefficients_(coefficients_.size()) {
     InitStream stream(1, 1);
     form_.initialise(stream, parameters_.data());
@@ -257,11 +273,14 @@ class Head {
   }
   void compose() { form_.compose(parallel_, kPairs, coefficients_.data(), parameters_.data(), w_.data()); }
   void apply() {
-    for_pairs([&](size_t p, size_t i) { form_.apply(w(p), psi_.data() + i * kFeature, q_.data() + i * form_.columns()); });
+    for_pairs(
+        [&](size_t p, size_t i) { form_.apply(w(p), psi_.data() + i * kFeature, q_.data() + i * form_.columns()); });
   }
   void infer() {
     apply();
-    for_units([&](int rows, size_t i) { form_.infer(rows, q_.data() + i * form_.columns(), scores_.data() + i * form_.actions()); });
+    for_units([&](int rows, size_t i) {
+      form_.infer(rows, q_.data() + i * form_.columns(), scores_.data() + i * form_.actions());
+    });
   }
   // The scores stand for their own gradient.
   void train() {
@@ -273,14 +292,16 @@ class Head {
     gradient_.zero();
     dw_.zero();
     for_units([&](int rows, size_t i) {
-      form_.scores_backward(rows, scores_.data() + i * form_.actions(), parameters_.data(), dq_.data() + i * form_.columns());
+      form_.scores_backward(rows, scores_.data() + i * form_.actions(), parameters_.data(),
+                            dq_.data() + i * form_.columns());
     });
     form_.phi_backward(kStates, q_.data(), scores_.data(), gradient_.data());
     for_pairs([&](size_t p, size_t i) {
-      form_.apply_backward(w(p), psi_.data() + i * kFeature, dq_.data() + i * form_.columns(), dpsi_.data() + i * kFeature,
-                           dw_.data() + p * form_.matrix_size());
+      form_.apply_backward(w(p), psi_.data() + i * kFeature, dq_.data() + i * form_.columns(),
+                           dpsi_.data() + i * kFeature, dw_.data() + p * form_.matrix_size());
     });
-    form_.compose_backward(parallel_, kPairs, coefficients_.data(), dw_.data(), parameters_.data(), dcoefficients_.data(), gradient_.data());
+    form_.compose_backward(parallel_, kPairs, coefficients_.data(), dw_.data(), parameters_.data(),
+                           dcoefficients_.data(), gradient_.data());
   }
   static constexpr int kFeature = 128, kBasis = 128, kStates = 512, kPairs = 144;
 
@@ -310,7 +331,8 @@ void method_rows(int threads) {
   for (const int actions : {5, 100, 1000})
     for (const int action_embedding : {0, 32}) {
       Head head(actions, action_embedding, threads);
-      const std::string name = std::string("head_") + (action_embedding ? "general_" : "direct_") + std::to_string(actions);
+      const std::string name =
+          std::string("head_") + (action_embedding ? "general_" : "direct_") + std::to_string(actions);
       row((name + "_train").c_str(), rate(Head::kStates, 1, [&] { head.train(); }), "states/s");
       row((name + "_infer").c_str(), rate(Head::kStates, 1, [&] { head.infer(); }), "states/s");
     }

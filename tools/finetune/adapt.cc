@@ -1,14 +1,14 @@
 // Demonstrations on stdin, an adapted checkpoint on stdout.
 #include <cstdio>
 
-#include "base/error.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
+#include "base/error.h"
 #include "base/signals.h"
-#include "learn/adapt.h"
-#include "play/world_factory.h"
-#include "play/stream.h"
 #include "finetune/finetune.h"
+#include "learn/adapt.h"
+#include "play/stream.h"
+#include "play/world_factory.h"
 
 using namespace synpo;
 
@@ -18,7 +18,8 @@ namespace {
 std::unique_ptr<World> wider_world(const World& world, const World* more, const std::string& name) {
   std::vector<Environment> environments = world.environments();
   if (more) {
-    if (more->name() != world.name()) fail(Exit::kUsage, "the checkpoint is of ", world.name(), ", -w names ", more->name());
+    if (more->name() != world.name())
+      fail(Exit::kUsage, "the checkpoint is of ", world.name(), ", -w names ", more->name());
     for (const Environment& env : more->environments()) {
       const int known = world.env_index(env.name);
       if (known < 0)
@@ -33,10 +34,13 @@ std::unique_ptr<World> wider_world(const World& world, const World* more, const 
 AdaptTargets parse_targets(const std::string& list) {
   AdaptTargets targets;
   std::string rest = list;
-  if (!rest.starts_with("embeddings")) throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
+  if (!rest.starts_with("embeddings"))
+    throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
   rest.erase(0, 10);
   while (!rest.empty()) {
-    bool* target = rest.starts_with("+heads") ? &targets.heads : rest.starts_with("+coefficients") ? &targets.coefficients : nullptr;
+    bool* target = rest.starts_with("+heads")          ? &targets.heads
+                   : rest.starts_with("+coefficients") ? &targets.coefficients
+                                                       : nullptr;
     if (!target) throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
     *target = true;
     rest.erase(0, target == &targets.heads ? 6 : 13);
@@ -51,8 +55,9 @@ int adapt(int argc, char** argv) {
   std::string checkpoint_path, world_name, output_path = "-";
   int64_t updates = 10000, seed = 1, threads = 0, trajectories = adaptation.trajectories;
   bool force = false, quiet = false;
-  Options options("synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
-                  "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
+  Options options(
+      "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
+      "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
       .text('w', "world", "WORLD", concat("new environments too: ", kWorldNames).c_str(), world_name)
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
@@ -64,7 +69,8 @@ int adapt(int argc, char** argv) {
       .real(0, "reward-loss", "X", "weight of reward prediction", adaptation.losses.reward, 0, 1e6)
       .real(0, "env-loss", "X", "weight of environment disentanglement", adaptation.losses.env, 0, 1e6)
       .real(0, "task-loss", "X", "weight of task disentanglement", adaptation.losses.task, 0, 1e6)
-      .real(0, "embedding-sd", "X", "new embeddings start as N(0, X^2); 0: Xavier uniform", adaptation.embedding_sd, 0, 1000)
+      .real(0, "embedding-sd", "X", "new embeddings start as N(0, X^2); 0: Xavier uniform", adaptation.embedding_sd, 0,
+            1000)
       .integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
       .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)
       .text('o', "output", "FILE", "write the checkpoint to FILE", output_path)
@@ -82,15 +88,16 @@ int adapt(int argc, char** argv) {
   const Model model = load_model(checkpoint, *from);
   const std::unique_ptr<World> wider = wider_world(*from, more.get(), world_name);
   const World& world = *wider;
-  Adaptation adapted(world, parallel, widen(model, *from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation, uint64_t(seed));
+  Adaptation adapted(world, parallel, widen(model, *from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation,
+                     uint64_t(seed));
   Output output(output_path, Output::Kind::kBinary, force);
   Input input("-");
   TrajectoryStream stream(input, world, {}, model.window);
   while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
   if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
   if (!quiet)
-    std::fprintf(stderr, "synpo-finetune: %zu demonstrations, %d new environments, %d new tasks\n", adapted.demonstrations(), adapted.new_envs(),
-                 adapted.new_tasks());
+    std::fprintf(stderr, "synpo-finetune: %zu demonstrations, %d new environments, %d new tasks\n",
+                 adapted.demonstrations(), adapted.new_envs(), adapted.new_tasks());
   Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
   for (int64_t i = 0; i < updates; ++i) {
     const Losses losses = adapted.update();

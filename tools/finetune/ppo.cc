@@ -3,18 +3,18 @@
 #include <cstdio>
 #include <memory>
 
-#include "base/clock.h"
-#include "base/error.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
+#include "base/clock.h"
+#include "base/error.h"
 #include "base/signals.h"
+#include "finetune/finetune.h"
 #include "format/run_log.h"
-#include "play/evaluate.h"
 #include "learn/long_run.h"
-#include "play/world_factory.h"
 #include "learn/ppo.h"
 #include "learn/recipe.h"
-#include "finetune/finetune.h"
+#include "play/evaluate.h"
+#include "play/world_factory.h"
 
 using namespace synpo;
 
@@ -26,9 +26,13 @@ struct Settings : LongRun {
   Settings() : LongRun(100, 10) {}
 };
 
-const std::vector<std::string> kColumns = {"update",  "states", "seconds", "states_per_s", "episodes", "success", "wrong",        "reward",
-                                           "length",  "policy", "value",   "entropy",      "kl",       "clip",    "explained_variance", "seen_success",
-                                           "seen_reward", "unseen_success", "unseen_reward"};
+const std::vector<std::string> kColumns = {"update",       "states",      "seconds",
+                                           "states_per_s", "episodes",    "success",
+                                           "wrong",        "reward",      "length",
+                                           "policy",       "value",       "entropy",
+                                           "kl",           "clip",        "explained_variance",
+                                           "seen_success", "seen_reward", "unseen_success",
+                                           "unseen_reward"};
 
 // Updates until there are enough steps or a signal comes; returns the signal, or 0.
 int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
@@ -49,10 +53,12 @@ int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
       RunLogRow::Evaluation e{NAN, NAN, NAN, NAN};
       const Model& model = run.model();
       if (s.evaluates(updates, last))
-        e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(), int(s.evaluate_episodes));
-      log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n, r.finished.wrong / n,
-                 r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value, r.entropy, r.kl, r.clip_fraction, r.explained_variance,
-                 e.seen_success, e.seen_reward, e.unseen_success, e.unseen_reward});
+        e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(),
+                            int(s.evaluate_episodes));
+      log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n,
+                 r.finished.wrong / n, r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value,
+                 r.entropy, r.kl, r.clip_fraction, r.explained_variance, e.seen_success, e.seen_reward,
+                 e.unseen_success, e.unseen_reward});
       note = short_count(rate) + " steps/s";
       if (n > 0) note += concat(", success ", std::lround(100 * r.finished.successes / n), " %");
       reported = now();
@@ -72,10 +78,13 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
   s.value_warm_up = ppo.value_warm_up;
   options.text('c', "checkpoint", "FILE", "the trained policy", s.checkpoint)
       .integer(0, "steps", "N", "steps of all worlds together, such as 2e7", s.steps, 1, INT64_MAX)
-      .text('p', "pairs", "FILE", "the pairs to learn on: TSV env, task, seen (the seen ones of the checkpoint)", s.pairs)
-      .text(0, "resume", "FILE", "go on from a checkpoint of --save, to the same bits; the other options must be the same", s.resume)
+      .text('p', "pairs", "FILE", "the pairs to learn on: TSV env, task, seen (the seen ones of the checkpoint)",
+            s.pairs)
+      .text(0, "resume", "FILE",
+            "go on from a checkpoint of --save, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
-      .text('w', "world", "WORLD", concat("with --init: ", kWorldNames, "; else the folder of the checkpoint's scenes").c_str(), s.world)
+      .text('w', "world", "WORLD",
+            concat("with --init: ", kWorldNames, "; else the folder of the checkpoint's scenes").c_str(), s.world)
       .text('m', "method", "NAME", "with --init: the method", s.method);
   s.add_to(options);
   options.section("PPO")
@@ -83,7 +92,8 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .integer(0, "rollout", "N", "steps of each before an update", s.rollout, 1, 100000)
       .integer(0, "epochs", "N", "passes over a rollout", s.epochs, 1, 1000)
       .integer(0, "minibatches", "N", "of a pass", s.minibatches, 1, 100000)
-      .integer(0, "value-warm-up", "N", "first rollouts, from which the value alone learns", s.value_warm_up, 0, INT32_MAX)
+      .integer(0, "value-warm-up", "N", "first rollouts, from which the value alone learns", s.value_warm_up, 0,
+               INT32_MAX)
       .real(0, "clip", "X", "how far the ratio may go from 1", ppo.clipping.clip, 0, 1)
       .real(0, "entropy", "X", "weight of the entropy", ppo.clipping.entropy, 0, 100)
       .real(0, "gradient-norm", "X", "length to which gradients are clipped", ppo.gradient_norm, 0, 1e9)
@@ -94,9 +104,12 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .real(0, "epsilon", "X", "RMSProp's epsilon", ppo.optimiser.epsilon, 0, 1)
       .real(0, "weight-decay", "X", "L2 term added to the gradient", ppo.optimiser.weight_decay, 0, 1)
       .real(0, "value-loss", "X", "weight of the value's loss", ppo.value_loss, 0, 1e6)
-      .real(0, "reward-loss", "X", "weight of reward prediction; the checkpoint's, or with --init", ppo.losses.reward, 0, 1e6)
-      .real(0, "env-loss", "X", "weight of environment disentanglement; the checkpoint's, or with --init", ppo.losses.env, 0, 1e6)
-      .real(0, "task-loss", "X", "weight of task disentanglement; the checkpoint's, or with --init", ppo.losses.task, 0, 1e6);
+      .real(0, "reward-loss", "X", "weight of reward prediction; the checkpoint's, or with --init", ppo.losses.reward,
+            0, 1e6)
+      .real(0, "env-loss", "X", "weight of environment disentanglement; the checkpoint's, or with --init",
+            ppo.losses.env, 0, 1e6)
+      .real(0, "task-loss", "X", "weight of task disentanglement; the checkpoint's, or with --init", ppo.losses.task, 0,
+            1e6);
 }
 
 }  // namespace
@@ -104,7 +117,8 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
 int ppo(int argc, char** argv) {
   Settings s;
   PpoOptions tuning;
-  Options options("synpo-finetune ppo", "[--steps N] [OPTION]... < CHECKPOINT > CHECKPOINT", "Fine-tunes a policy by its reward.");
+  Options options("synpo-finetune ppo", "[--steps N] [OPTION]... < CHECKPOINT > CHECKPOINT",
+                  "Fine-tunes a policy by its reward.");
   add_options(options, s, tuning);
   options.parse(argc, argv);
   tuning.lanes = int(s.lanes);
@@ -130,7 +144,8 @@ int ppo(int argc, char** argv) {
   const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from, needs_world ? s.world : "");
   const World& world = *opened;
   const ImitationOptions network = recipe(kDefaultRecipe, s.method, world.sight());
-  Model model = fresh ? fresh_model(s.method, network.shape(world), {uint64_t(s.seed), network.embedding_sd}) : load_model(from, world);
+  Model model = fresh ? fresh_model(s.method, network.shape(world), {uint64_t(s.seed), network.embedding_sd})
+                      : load_model(from, world);
   if (!s.pairs.empty()) {
     Input input(s.pairs);
     model.seen = resolve_pairs(world, read_pairs(input), true);

@@ -1,6 +1,6 @@
 // synpo-matrix compare: two methods, or two trainings of one, pair by pair.
-#include "base/error.h"
 #include "stats/report/compare.h"
+#include "base/error.h"
 #include "matrix/matrix.h"
 
 namespace synpo {

@@ -3,8 +3,8 @@
 
 #include "base/error.h"
 #include "format/pairs.h"
-#include "stats/matrix/filter.h"
 #include "matrix/matrix.h"
+#include "stats/matrix/filter.h"
 #include "stats/matrix/split.h"
 
 namespace synpo {

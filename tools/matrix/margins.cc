@@ -1,8 +1,8 @@
 // synpo-matrix rows and cols: tasks and environments, the worst first.
 #include <stdexcept>
 
-#include "stats/report/margins.h"
 #include "matrix/matrix.h"
+#include "stats/report/margins.h"
 
 namespace synpo {
 namespace {
@@ -33,11 +33,13 @@ int write(Axis axis, const char* command, const char* purpose, int argc, char** 
 }  // namespace
 
 int matrix_rows(int argc, char** argv) {
-  return write(Axis::kTasks, "synpo-matrix rows", "Success at each task, over environments and runs, worst first.", argc, argv);
+  return write(Axis::kTasks, "synpo-matrix rows", "Success at each task, over environments and runs, worst first.",
+               argc, argv);
 }
 
 int matrix_cols(int argc, char** argv) {
-  return write(Axis::kEnvs, "synpo-matrix cols", "Success in each environment, over tasks and runs, worst first.", argc, argv);
+  return write(Axis::kEnvs, "synpo-matrix cols", "Success in each environment, over tasks and runs, worst first.", argc,
+               argv);
 }
 
 }  // namespace synpo

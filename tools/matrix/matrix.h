@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "base/files/io.h"
 #include "base/cli/options.h"
+#include "base/files/io.h"
 #include "stats/bootstrap.h"
 #include "stats/matrix/merge.h"
 

@@ -9,10 +9,12 @@ namespace synpo {
 
 int matrix_show(int argc, char** argv) {
   std::string method, scheme = "safe", when = "auto", by = "seen", output_path = "-";
-  Options options("synpo-matrix show", "[OPTION]... [MATRIX]...",
-                  "The matrix in the terminal, in coloured blocks where it has colour: tasks down, environments across, per cent.");
+  Options options(
+      "synpo-matrix show", "[OPTION]... [MATRIX]...",
+      "The matrix in the terminal, in coloured blocks where it has colour: tasks down, environments across, per cent.");
   options.text(0, "method", "NAME", "only the rows of this method", method)
-      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]", [&](const std::string& name) { scheme = find_scheme(name).name; })
+      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]",
+            [&](const std::string& name) { scheme = find_scheme(name).name; })
       .choice(0, "by", "KIND", "tell apart seen from unseen pairs, or parts: seen or part", by, {"seen", "part"})
       .choice(0, "colour", "WHEN", "auto, always or never", when, {"auto", "always", "never"})
       .text('o', "output", "FILE", "where the matrix goes", output_path);
@@ -23,7 +25,8 @@ int matrix_show(int argc, char** argv) {
   TerminalColour colour = terminal_colour(fd);
   if (when == "never") colour = TerminalColour::kNone;
   // Asked for in so many words, whatever the environment says; 256 colours where it says nothing.
-  if (when == "always" && colour == TerminalColour::kNone) colour = std::max(environment_colour(), TerminalColour::k256);
+  if (when == "always" && colour == TerminalColour::kNone)
+    colour = std::max(environment_colour(), TerminalColour::k256);
   output.write(terminal_matrix(figure.panels[0].table, find_scheme(scheme), colour, terminal_width(fd)));
   output.finish();
   return 0;

@@ -5,8 +5,8 @@
 
 #include "base/error.h"
 #include "format/pairs.h"
-#include "play/world_factory.h"
 #include "matrix/matrix.h"
+#include "play/world_factory.h"
 #include "stats/matrix/split.h"
 
 namespace synpo {
@@ -41,18 +41,24 @@ int matrix_split(int argc, char** argv) {
     if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
     plan.singles.emplace_back(names[0], names[1]);
   };
-  Options options("synpo-matrix split", "[OPTION]... >PAIRS", "Draws which pairs of environments and tasks are seen in training.");
-  options.call('n', "seen", "COUNT", "seen pairs [36 %: 144 of 400; with --setting 2 or 3 all of P]", count_into(plan.seen))
+  Options options("synpo-matrix split", "[OPTION]... >PAIRS",
+                  "Draws which pairs of environments and tasks are seen in training.");
+  options
+      .call('n', "seen", "COUNT", "seen pairs [36 %: 144 of 400; with --setting 2 or 3 all of P]",
+            count_into(plan.seen))
       .call(0, "ratio", "R", "seen pairs as a share of all (of P), instead of -n",
             [&](const std::string& text) {
               char* end = nullptr;
               ratio = std::strtod(text.c_str(), &end);
-              if (text.empty() || *end || !(ratio > 0 && ratio <= 1)) throw std::invalid_argument("expected a number over 0 and up to 1");
+              if (text.empty() || *end || !(ratio > 0 && ratio <= 1))
+                throw std::invalid_argument("expected a number over 0 and up to 1");
             })
-      .call(0, "cover", "COUNT", "at least so many seen per environment and task [4, or what -n allows]", count_into(plan.cover))
+      .call(0, "cover", "COUNT", "at least so many seen per environment and task [4, or what -n allows]",
+            count_into(plan.cover))
       .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
       .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own", world)
+      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own",
+            world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")

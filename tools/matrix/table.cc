@@ -2,9 +2,9 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "stats/report/method_table.h"
 #include "matrix/matrix.h"
 #include "stats/matrix/split.h"
+#include "stats/report/method_table.h"
 
 namespace synpo {
 
@@ -15,8 +15,9 @@ int matrix_table(int argc, char** argv) {
   BootstrapPlan plan;
   int64_t seed = 1;
   bool brief = false;
-  Options options("synpo-matrix table", "[OPTION]... [MATRIX]...",
-                  "A line per method: mean and sd over runs, interquartile mean and interval, for seen and unseen pairs.");
+  Options options(
+      "synpo-matrix table", "[OPTION]... [MATRIX]...",
+      "A line per method: mean and sd over runs, interquartile mean and interval, for seen and unseen pairs.");
   options
       .call('f', "format", "FORMAT", "text, tsv, markdown or latex [text]",
             [&](const std::string& name) {
@@ -43,8 +44,11 @@ int matrix_table(int argc, char** argv) {
   if (format == "tsv")
     write_method_table(output, table);
   else
-    output.write(method_table_text(
-        table, format == "latex" ? TableFormat::kLatex : format == "markdown" ? TableFormat::kMarkdown : TableFormat::kText, brief));
+    output.write(method_table_text(table,
+                                   format == "latex"      ? TableFormat::kLatex
+                                   : format == "markdown" ? TableFormat::kMarkdown
+                                                          : TableFormat::kText,
+                                   brief));
   output.finish();
   return 0;
 }

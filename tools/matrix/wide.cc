@@ -2,8 +2,8 @@
 #include <stdexcept>
 
 #include "draw/plot/heatmap.h"
-#include "stats/matrix/filter.h"
 #include "matrix/matrix.h"
+#include "stats/matrix/filter.h"
 
 namespace synpo {
 
@@ -15,7 +15,8 @@ int matrix_wide(int argc, char** argv) {
       .call(0, "measure", "NAME", "success, reward, length, wrong, timeouts; episodes, successes, seen [success]",
             [&](const std::string& name) {
               if (!is_wide_measure(name))
-                throw std::invalid_argument("expected success, reward, length, wrong, timeouts, episodes, successes or seen");
+                throw std::invalid_argument(
+                    "expected success, reward, length, wrong, timeouts, episodes, successes or seen");
               measure = name;
             })
       .text('o', "output", "FILE", "where the table goes", output_path);

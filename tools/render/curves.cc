@@ -46,7 +46,8 @@ Measure find_measure(const std::string& name, const std::string& pairs) {
 }
 
 // The curves of one log, one for each part; empty where a part has no values.
-std::vector<Curve> read_curves(const std::string& path, RunLogAxis axis, double unit, const Measure& measure, const std::string& name) {
+std::vector<Curve> read_curves(const std::string& path, RunLogAxis axis, double unit, const Measure& measure,
+                               const std::string& name) {
   Input input(path);
   const RunLogTable log = read_run_log(input, axis, measure.columns);
   std::vector<Curve> curves(measure.columns.size());
@@ -71,15 +72,18 @@ int curves(int argc, char** argv) {
   PictureOptions picture;
   std::string x = "updates", y = "success", pairs = "both", band = "sd";
   double rate = 0;
-  Options options("synpo-render curves", "[OPTION]... [[LABEL=]LOG[,LOG]...]...",
-                  "Draws run logs as curves. Logs of one label are runs of one method: their mean, and a band around it.");
+  Options options(
+      "synpo-render curves", "[OPTION]... [[LABEL=]LOG[,LOG]...]...",
+      "Draws run logs as curves. Logs of one label are runs of one method: their mean, and a band around it.");
   options.choice('x', "across", "AXIS", "updates, states or minutes", x, {"updates", "states", "minutes"})
       .text('y', "up", "COLUMN", "success, reward, reward_loss, or any column of the log", y)
       .choice(0, "pairs", "WHICH", "seen, unseen or both", pairs, {"seen", "unseen", "both"})
-      .integer(0, "panels", "N", "1: seen dashed, unseen drawn through; 2: side by side; 0: 2 for several methods", style.panels, 0, 2)
+      .integer(0, "panels", "N", "1: seen dashed, unseen drawn through; 2: side by side; 0: 2 for several methods",
+               style.panels, 0, 2)
       .choice(0, "band", "KIND", "over the runs: sd, range (lowest to highest) or none", band, {"sd", "range", "none"})
       .real(0, "rate", "X", "states per second, from which minutes are computed; 0: the log's clock", rate, 0, 1e12)
-      .call(0, "mark", "Y=LABEL", "a dotted line across; seen:Y=LABEL, unseen:Y=LABEL for these pairs alone; repeatable",
+      .call(0, "mark", "Y=LABEL",
+            "a dotted line across; seen:Y=LABEL, unseen:Y=LABEL for these pairs alone; repeatable",
             [&](const std::string& text) { style.marks.push_back(parse_curve_mark(drawable(text))); })
       .call(0, "x-range", "LOW:HIGH", "ends of the axis across, in updates, states or minutes",
             [&](const std::string& text) { style.x = parse_axis_range(text); })
@@ -103,7 +107,9 @@ int curves(int argc, char** argv) {
   style.x_title = x;
   style.y_title = measure.title;
   style.percent = measure.percent;
-  const RunLogAxis axis = x == "updates" ? RunLogAxis::kUpdates : x == "states" || rate > 0 ? RunLogAxis::kStates : RunLogAxis::kMinutes;
+  const RunLogAxis axis = x == "updates"              ? RunLogAxis::kUpdates
+                          : x == "states" || rate > 0 ? RunLogAxis::kStates
+                                                      : RunLogAxis::kMinutes;
 
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   const Font font(picture.font);

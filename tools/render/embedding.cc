@@ -20,7 +20,8 @@ struct Row {
 };
 
 // Embeddings as the policy uses them.
-Embeddings read_embeddings(const Model& model, const TensorInfo* place, const std::string& title, const std::vector<Row>& rows) {
+Embeddings read_embeddings(const Model& model, const TensorInfo* place, const std::string& title,
+                           const std::vector<Row>& rows) {
   Embeddings out{title, {}, {}, model.shape.embedding, {}};
   for (const Row& row : rows) {
     out.names.push_back(row.name);
@@ -42,7 +43,8 @@ int embedding(int argc, char** argv) {
   PictureOptions picture;
   std::string kind = "pca", metric = "cosine";
   bool all = false;
-  Options options("synpo-render embedding", "[OPTION]... [CHECKPOINT]", "Draws a checkpoint's embeddings of environments and of tasks side by side.");
+  Options options("synpo-render embedding", "[OPTION]... [CHECKPOINT]",
+                  "Draws a checkpoint's embeddings of environments and of tasks side by side.");
   options.choice(0, "kind", "KIND", "pca: two principal components; distance: matrices", kind, {"pca", "distance"})
       .choice(0, "metric", "NAME", "distances: cosine or euclidean", metric, {"cosine", "euclidean"})
       .flag(0, "all", "environments and tasks of no seen pair too", all)
@@ -61,14 +63,18 @@ int embedding(int argc, char** argv) {
 
   std::vector<Row> envs, tasks;
   const auto trained = [&](int EnvTask::*side, int index) {
-    return all || std::any_of(model.seen.begin(), model.seen.end(), [&](const EnvTask& pair) { return pair.*side == index; });
+    return all ||
+           std::any_of(model.seen.begin(), model.seen.end(), [&](const EnvTask& pair) { return pair.*side == index; });
   };
   for (int i = 0; i < world.envs(); ++i)
     if (trained(&EnvTask::env, i)) envs.push_back({i, world.environments()[i].name});
   for (int i = 0; i < world.task_count(); ++i)
     if (trained(&EnvTask::task, i)) tasks.push_back({i, world.task_names()[i]});
-  const auto treasures = [&](const Row& row) { return std::pair(grid->tasks()[row.index].first, grid->tasks()[row.index].second); };
-  if (grid) std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
+  const auto treasures = [&](const Row& row) {
+    return std::pair(grid->tasks()[row.index].first, grid->tasks()[row.index].second);
+  };
+  if (grid)
+    std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
 
   std::vector<Embeddings> panels;
   std::string of;
@@ -80,10 +86,14 @@ int embedding(int argc, char** argv) {
     panels.push_back(read_embeddings(model, place, "tasks", tasks));
     of += concat(count_text(tasks.size(), world.task_count()), " tasks");
     if (grid)
-      for (const Row& row : tasks) panels.back().marks.push_back([task = grid->tasks()[row.index]](Canvas& canvas, const Box& box) { draw_task(canvas, box, task); });
+      for (const Row& row : tasks)
+        panels.back().marks.push_back(
+            [task = grid->tasks()[row.index]](Canvas& canvas, const Box& box) { draw_task(canvas, box, task); });
   }
   if (panels.empty()) fail(Exit::kData, "method ", quoted(model.method), " has no embeddings");
-  const char* what = kind == "pca" ? "principal components" : metric == "cosine" ? "cosine distance" : "Euclidean distance";
+  const char* what = kind == "pca"        ? "principal components"
+                     : metric == "cosine" ? "cosine distance"
+                                          : "Euclidean distance";
   style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", of, ", size ",
                          model.shape.embedding, "; ", model.method, ", ", model.updates, " updates",
                          grid ? "; a task's mark: left its first treasure, right its second" : "");
@@ -91,6 +101,7 @@ int embedding(int argc, char** argv) {
   if (kind == "pca")
     finish(output, draw_embedding_map(panels, style, font));
   else
-    finish(output, draw_embedding_distances(panels, metric == "cosine" ? Distance::kCosine : Distance::kEuclidean, style, font));
+    finish(output, draw_embedding_distances(panels, metric == "cosine" ? Distance::kCosine : Distance::kEuclidean,
+                                            style, font));
   return 0;
 }

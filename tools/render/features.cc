@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/error.h"
 #include "base/cli/progress.h"
+#include "base/error.h"
 #include "base/signals.h"
 #include "draw/vision/feature_net.h"
 #include "play/kitchen_scenes.h"
@@ -16,8 +16,9 @@ int features(int argc, char** argv) {
   std::string world_name = "kitchen", net_path, envs, folder;
   int64_t layouts = 1, seed = 1, threads = 0;
   bool quiet = false;
-  Options options("synpo-render features", "--features FILE -o DIR [OPTION]...",
-                  "Writes a scene file for each kitchen: what its rules need, and the features that a network makes of all views.");
+  Options options(
+      "synpo-render features", "--features FILE -o DIR [OPTION]...",
+      "Writes a scene file for each kitchen: what its rules need, and the features that a network makes of all views.");
   options.text(0, "features", "FILE", "the network, ONNX: 224 x 224 pixels to 2048 features", net_path)
       .text('o', "output", "DIR", "the folder for the scene files; it is made where it is missing", folder)
       .choice('w', "world", "WORLD", "kitchen", world_name, {"kitchen"})
@@ -52,11 +53,13 @@ int features(int argc, char** argv) {
   Progress progress("synpo-render", "views", 0, quiet);
   for (size_t i = 0; i < chosen.size(); ++i) {
     const int env = world.env_index(chosen[i]);
-    const Scene scene = make_scene(parallel, world, env, random_layouts(world, env, int(layouts), uint64_t(seed)), pictures, [&](size_t done, size_t total) {
-      progress.set_total(uint64_t(total * chosen.size()));
-      progress.update(uint64_t(total * i + done), concat(chosen[i], ", ", i + 1, " of ", chosen.size()));
-      stop_if_asked();
-    });
+    const Scene scene =
+        make_scene(parallel, world, env, random_layouts(world, env, int(layouts), uint64_t(seed)), pictures,
+                   [&](size_t done, size_t total) {
+                     progress.set_total(uint64_t(total * chosen.size()));
+                     progress.update(uint64_t(total * i + done), concat(chosen[i], ", ", i + 1, " of ", chosen.size()));
+                     stop_if_asked();
+                   });
     write_file((std::filesystem::path(folder) / (chosen[i] + kSceneEnding)).string(), format_scene(scene));
   }
   progress.finish();

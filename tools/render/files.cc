@@ -61,12 +61,16 @@ std::string stem(const NamedFile& file) {
   return file.path == "-" ? "standard input" : std::filesystem::path(file.path).stem().string();
 }
 
-// A file without a label has its own name, or its path where another file has that name as well; a file alone needs none.
+// A file without a label has its own name, or its path where another file has that name as well; a file alone needs
+// none.
 void name_files(std::vector<NamedFile>& files) {
-  const auto takes = [](const NamedFile& file, const std::string& name) { return (file.labelled ? file.label : stem(file)) == name; };
+  const auto takes = [](const NamedFile& file, const std::string& name) {
+    return (file.labelled ? file.label : stem(file)) == name;
+  };
   for (NamedFile& file : files)
     if (!file.labelled && files.size() > 1) {
-      const auto takers = std::count_if(files.begin(), files.end(), [&](const NamedFile& other) { return takes(other, stem(file)); });
+      const auto takers =
+          std::count_if(files.begin(), files.end(), [&](const NamedFile& other) { return takes(other, stem(file)); });
       file.label = takers > 1 ? file.path : stem(file);
     }
 }
@@ -80,8 +84,10 @@ std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands) {
   std::vector<LabelledFiles> out;
   for (const NamedFile& file : files) {
     if (first_bad_byte(file.label) != std::string::npos)
-      fail(Exit::kUsage, "the label ", quoted(file.label), " is not UTF-8 text: give another with LABEL=", quoted(file.path));
-    auto same = std::find_if(out.begin(), out.end(), [&](const LabelledFiles& other) { return other.label == file.label; });
+      fail(Exit::kUsage, "the label ", quoted(file.label),
+           " is not UTF-8 text: give another with LABEL=", quoted(file.path));
+    auto same =
+        std::find_if(out.begin(), out.end(), [&](const LabelledFiles& other) { return other.label == file.label; });
     if (same == out.end()) same = out.insert(out.end(), {file.label, {}});
     same->paths.push_back(file.path);
   }

@@ -4,8 +4,8 @@
 #include "base/error.h"
 #include "draw/plot/heatmap.h"
 #include "draw/terminal/terminal.h"
-#include "stats/matrix/merge.h"
 #include "render/render.h"
+#include "stats/matrix/merge.h"
 #include "world/grid/task.h"
 
 using namespace synpo;
@@ -31,7 +31,8 @@ std::vector<PanelMatrix> split(const Matrix& matrix, const PanelChoice& choice) 
     if (!choice.method.empty() && row.method != choice.method) continue;
     const std::string title = choice.by == "seed" ? concat("seed ", row.seed) : row.method;
     auto panel = std::find_if(out.begin(), out.end(), [&](const PanelMatrix& other) { return other.title == title; });
-    if (panel == out.end() && out.size() == kMostPanels) fail(Exit::kData, "more than ", kMostPanels, " panels cannot be drawn");
+    if (panel == out.end() && out.size() == kMostPanels)
+      fail(Exit::kData, "more than ", kMostPanels, " panels cannot be drawn");
     if (panel == out.end()) panel = out.insert(out.end(), {title, {{}, matrix.has_part, matrix.extra_columns}});
     panel->matrix.rows.push_back(row);
   }

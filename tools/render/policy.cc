@@ -1,8 +1,8 @@
 // synpo-render policy: what a checkpoint would do in every cell of a maze, against the planner.
 #include "base/error.h"
 #include "draw/grid/policy_picture.h"
-#include "play/model.h"
 #include "play/cell_policy.h"
+#include "play/model.h"
 #include "render/render.h"
 
 using namespace synpo;
@@ -25,7 +25,8 @@ GridState second_stage(const Task& task, GridState state) {
 
 // What the agent remembers in a cell.
 std::string history_text(int pictures) {
-  if (pictures == 1) return "the agent stands in each cell as at the first step of an episode, with no picture from before";
+  if (pictures == 1)
+    return "the agent stands in each cell as at the first step of an episode, with no picture from before";
   return concat("the agent stands in each cell and did so in all of the last ", pictures, " pictures");
 }
 
@@ -42,8 +43,10 @@ int policy(int argc, char** argv) {
       .text('t', "task", "NAME", "task", task_name)
       .integer('s', "seed", "N", "seed of the treasures", seed, 0, INT64_MAX)
       .integer(0, "episode", "N", "number of the episode under this seed", episode, 0, UINT32_MAX)
-      .integer(0, "stage", "N", "1: on the way to the first treasure; 2: to the second; 0: both side by side", stage, 0, 2)
-      .integer(0, "pictures", "N", "pictures of the agent there that it remembers; 0: 1 in stage 1, 4 in stage 2", pictures, 0, kHistory)
+      .integer(0, "stage", "N", "1: on the way to the first treasure; 2: to the second; 0: both side by side", stage, 0,
+               2)
+      .integer(0, "pictures", "N", "pictures of the agent there that it remembers; 0: 1 in stage 1, 4 in stage 2",
+               pictures, 0, kHistory)
       .call(0, "title", "TEXT", "title instead of maze and task", drawn(style.title));
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
@@ -71,7 +74,8 @@ int policy(int argc, char** argv) {
                                           probe_cells(*model.policy, world, pair, state, model.window, remembered)));
       style.caption += concat(style.caption.empty() ? "" : ". ", "Stage ", number, ": ", history_text(remembered));
     }
-  if (style.title.empty()) style.title = concat(maze.name, ", task ", task.name(), model.is_seen(pair) ? " (seen)" : " (unseen)");
+  if (style.title.empty())
+    style.title = concat(maze.name, ", task ", task.name(), model.is_seen(pair) ? " (seen)" : " (unseen)");
   style.caption = concat(model.method, ", ", model.updates, " updates. ", style.caption);
   finish(output, draw_policy(maze, task, stages, style, Font(picture.font)));
   return 0;

@@ -3,12 +3,13 @@
 #include <string>
 #include <vector>
 
+#include "base/cli/options.h"
 #include "base/error.h"
 #include "base/files/io.h"
-#include "base/cli/options.h"
 #include "draw/canvas/canvas.h"
 
-// What every command takes: where the picture goes, its size and its font; and --ansi, where the command can draw with characters.
+// What every command takes: where the picture goes, its size and its font; and --ansi, where the command can draw with
+// characters.
 struct PictureOptions {
   std::string output = "-", font;
   bool force = false, ansi = false;
@@ -29,7 +30,8 @@ struct PictureOptions {
   void check(const synpo::Options& options, std::vector<const char*> png_only) const {
     png_only.insert(png_only.end(), {"scale", "font"});
     for (const char* option : png_only)
-      if (ansi && options.given(option)) synpo::fail(synpo::Exit::kUsage, "--", option, " is for a PNG, not for --ansi");
+      if (ansi && options.given(option))
+        synpo::fail(synpo::Exit::kUsage, "--", option, " is for a PNG, not for --ansi");
   }
 
   synpo::Output open() const {
@@ -49,12 +51,13 @@ struct LabelledFiles {
   std::vector<std::string> paths;
 };
 
-// Operands FILE, LABEL=FILE[,FILE]..., or LABEL= in front of FILEs; none is standard input. Where there is a file of just that name, it
-// is meant. A file without a label has its own name for one, and none where it is alone. Throws kUsage for what can't be read so, and
-// for labels that cannot be drawn.
+// Operands FILE, LABEL=FILE[,FILE]..., or LABEL= in front of FILEs; none is standard input. Where there is a file of
+// just that name, it is meant. A file without a label has its own name for one, and none where it is alone. Throws
+// kUsage for what can't be read so, and for labels that cannot be drawn.
 std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands);
 
-// The argument of an option that is drawn. Throws std::invalid_argument where it is not UTF-8 or has control characters.
+// The argument of an option that is drawn. Throws std::invalid_argument where it is not UTF-8 or has control
+// characters.
 const std::string& drawable(const std::string& text);
 // Takes a title from an option.
 inline auto drawn(std::string& title) {

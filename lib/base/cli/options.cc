@@ -13,9 +13,9 @@
 #include <utility>
 
 #include "base/error.h"
-#include "base/text.h"
 #include "base/files/io.h"
 #include "base/signals.h"
+#include "base/text.h"
 
 namespace synpo {
 
@@ -84,7 +84,8 @@ Options& Options::integer(char letter, const char* name, const char* arg, const 
   return *this;
 }
 
-Options& Options::real(char letter, const char* name, const char* arg, const char* help, double& value, double low, double high) {
+Options& Options::real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
+                       double high) {
   call(letter, name, arg, help, [&value, low, high](const std::string& text) {
     value = parse_real(text);
     if (value < low || value > high) throw std::invalid_argument(concat("expected a number from ", low, " to ", high));
@@ -96,7 +97,8 @@ Options& Options::real(char letter, const char* name, const char* arg, const cha
 Options& Options::choice(char letter, const char* name, const char* arg, const char* help, std::string& value,
                          std::vector<std::string> words) {
   call(letter, name, arg, help, [&value, words = std::move(words)](const std::string& given) {
-    if (std::find(words.begin(), words.end(), given) == words.end()) throw std::invalid_argument("expected " + alternatives(words));
+    if (std::find(words.begin(), words.end(), given) == words.end())
+      throw std::invalid_argument("expected " + alternatives(words));
     value = given;
   });
   entries_.back().shown_default = value;
@@ -135,9 +137,7 @@ std::string Options::usage() const {
   return out;
 }
 
-void Options::wrong(const std::string& message) const {
-  fail(Exit::kUsage, message, "; try '", tool_, " --help'");
-}
+void Options::wrong(const std::string& message) const { fail(Exit::kUsage, message, "; try '", tool_, " --help'"); }
 
 std::vector<std::string> Options::parse(int argc, char** argv, int least, int most) {
   constexpr int kFirstLong = 1000;
@@ -147,7 +147,8 @@ std::vector<std::string> Options::parse(int argc, char** argv, int least, int mo
     const Entry& entry = entries_[i];
     if (entry.heading) continue;
     if (entry.letter) letters += std::string(1, entry.letter) + (entry.arg.empty() ? "" : ":");
-    longs.push_back({entry.name.c_str(), entry.arg.empty() ? no_argument : required_argument, nullptr, int(kFirstLong + i)});
+    longs.push_back(
+        {entry.name.c_str(), entry.arg.empty() ? no_argument : required_argument, nullptr, int(kFirstLong + i)});
   }
   longs.push_back({"help", no_argument, nullptr, 'h'});
   longs.push_back({"version", no_argument, nullptr, 1});
@@ -205,7 +206,8 @@ int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char
 int run_commands(const char* tool, const char* purpose, const std::vector<Command>& commands, int argc, char** argv) {
   std::string list;
   for (const Command& command : commands)
-    list += concat("  ", command.name, std::string(12 - std::min<size_t>(11, std::strlen(command.name)), ' '), command.purpose, "\n");
+    list += concat("  ", command.name, std::string(12 - std::min<size_t>(11, std::strlen(command.name)), ' '),
+                   command.purpose, "\n");
   if (argc >= 2 && argv[1][0] != '-') {
     for (const Command& command : commands)
       if (argv[1] == std::string(command.name)) return command.body(argc - 1, argv + 1);

@@ -18,13 +18,17 @@ class Options {
   // `letter` may be 0. `help` is one line; the default is read from `value` and shown. A value outside the range given,
   // or that is no number, is a usage error (64).
   Options& flag(char letter, const char* name, const char* help, bool& value);
-  Options& integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low, int64_t high);
-  Options& real(char letter, const char* name, const char* arg, const char* help, double& value, double low, double high);
+  Options& integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low,
+                   int64_t high);
+  Options& real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
+                double high);
   Options& text(char letter, const char* name, const char* arg, const char* help, std::string& value);
   // One of these words; any other is a usage error that names them.
-  Options& choice(char letter, const char* name, const char* arg, const char* help, std::string& value, std::vector<std::string> words);
+  Options& choice(char letter, const char* name, const char* arg, const char* help, std::string& value,
+                  std::vector<std::string> words);
   // Calls `set` with the argument; std::invalid_argument thrown by it is a usage error that names the option.
-  Options& call(char letter, const char* name, const char* arg, const char* help, std::function<void(const std::string&)> set);
+  Options& call(char letter, const char* name, const char* arg, const char* help,
+                std::function<void(const std::string&)> set);
   // A heading in --help above the options that follow.
   Options& section(const char* title);
 

@@ -12,8 +12,8 @@ constexpr double kBarEvery_s = 0.2, kLineEvery_s = 30;
 }
 
 Progress::Progress(std::string tool, std::string unit, uint64_t total, bool quiet, uint64_t first)
-    : tool_(std::move(tool)), unit_(std::move(unit)), total_(total), first_(first), quiet_(quiet), terminal_(isatty(2) != 0),
-      start_(now()), last_(start_) {}
+    : tool_(std::move(tool)), unit_(std::move(unit)), total_(total), first_(first), quiet_(quiet),
+      terminal_(isatty(2) != 0), start_(now()), last_(start_) {}
 
 Progress::~Progress() { finish(); }
 

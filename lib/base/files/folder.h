@@ -5,8 +5,8 @@
 
 namespace synpo {
 
-// Writes into a temporary folder beside `path` that takes the name in finish(). Unfinished, it leaves nothing behind. A folder that cannot
-// be made, or is there and not empty, is kCantCreate; a full disk kIo.
+// Writes into a temporary folder beside `path` that takes the name in finish(). Unfinished, it leaves nothing behind. A
+// folder that cannot be made, or is there and not empty, is kCantCreate; a full disk kIo.
 class OutputFolder {
  public:
   explicit OutputFolder(const std::string& path);

@@ -58,8 +58,7 @@ bool Input::line(std::string& out, size_t limit) {
     const char* start = buffer_.data() + begin_;
     const auto* newline = static_cast<const char*>(std::memchr(start, '\n', end_ - begin_));
     const size_t taken = newline ? size_t(newline - start) : end_ - begin_;
-    if (out.size() + taken > limit)
-      fail(Exit::kData, name_, ": line ", lines_ + 1, ": longer than ", limit, " bytes");
+    if (out.size() + taken > limit) fail(Exit::kData, name_, ": line ", lines_ + 1, ": longer than ", limit, " bytes");
     out.append(start, taken);
     begin_ += taken + (newline ? 1 : 0);
     offset_ += taken + (newline ? 1 : 0);
@@ -125,7 +124,8 @@ Output::~Output() {
 }
 
 void Output::failed(const char* what) {
-  fail(Exit::kIo, "cannot ", what, " ", is_stdout() ? "standard output" : "'" + path_ + "'", ": ", std::strerror(errno));
+  fail(Exit::kIo, "cannot ", what, " ", is_stdout() ? "standard output" : "'" + path_ + "'", ": ",
+       std::strerror(errno));
 }
 
 void Output::write(std::string_view bytes) {

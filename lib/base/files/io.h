@@ -24,9 +24,9 @@ class Input {
   // Everything that is left; more than `limit` bytes is an error (kData).
   std::string rest(size_t limit);
 
-  const std::string& name() const { return name_; }   // for messages: the path, or "standard input"
-  uint64_t line_number() const { return lines_; }     // of the line returned last, from 1
-  uint64_t offset() const { return offset_; }         // bytes taken so far
+  const std::string& name() const { return name_; }  // for messages: the path, or "standard input"
+  uint64_t line_number() const { return lines_; }    // of the line returned last, from 1
+  uint64_t offset() const { return offset_; }        // bytes taken so far
 
   // Throws kData with "name: line N: ..." in front of the arguments.
   [[noreturn]] void bad_line(const std::string& message) const;
@@ -66,6 +66,7 @@ class Output {
 };
 
 // Writes `bytes` to `path` as Output does.
-void write_file(const std::string& path, std::string_view bytes, Output::Kind kind = Output::Kind::kBinary, bool force = false);
+void write_file(const std::string& path, std::string_view bytes, Output::Kind kind = Output::Kind::kBinary,
+                bool force = false);
 
 }  // namespace synpo

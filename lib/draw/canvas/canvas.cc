@@ -65,8 +65,8 @@ void Canvas::polygon(const std::vector<Point>& corners, Rgb colour) {
 }
 
 void Canvas::disc(Point centre, double radius, Rgb colour) {
-  cv::circle(pixels_->bgr, fixed_point(centre), int(std::lround(radius * (1 << kShift))), scalar(colour), cv::FILLED, cv::LINE_AA,
-             kShift);
+  cv::circle(pixels_->bgr, fixed_point(centre), int(std::lround(radius * (1 << kShift))), scalar(colour), cv::FILLED,
+             cv::LINE_AA, kShift);
 }
 
 void Canvas::picture(const Box& box, const uint8_t* rgb) {
@@ -98,7 +98,9 @@ void Canvas::text(int x, int y, const std::string& text, int size, Rgb colour, A
   const TextMask& mask = font_.mask(text, size);
   const int left = across == Across::kLeft ? x : across == Across::kCentre ? x - mask.width / 2 : x - mask.width;
   const int digit = font_.digit_height(size);
-  const int baseline = upright == Upright::kBaseline ? y : upright == Upright::kMiddle ? y + (digit + 1) / 2 : y + digit;
+  const int baseline = upright == Upright::kBaseline ? y
+                       : upright == Upright::kMiddle ? y + (digit + 1) / 2
+                                                     : y + digit;
   const uint8_t* coverage = mask.coverage.data();
   for (int row = -mask.ascent; row < mask.descent; ++row)
     for (int column = 0; column < mask.width; ++column) blend(left + column, baseline + row, *coverage++, colour);
@@ -116,7 +118,8 @@ void Canvas::text_up(int x, int y, const std::string& text, int size, Rgb colour
 std::string Canvas::png() const {
   std::vector<uint8_t> bytes;
   // Both parameters are given so that a build's defaults cannot change the bytes.
-  cv::imencode(".png", pixels_->bgr, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6, cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_DEFAULT});
+  cv::imencode(".png", pixels_->bgr, bytes,
+               {cv::IMWRITE_PNG_COMPRESSION, 6, cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_DEFAULT});
   return {bytes.begin(), bytes.end()};
 }
 

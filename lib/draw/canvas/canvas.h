@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "draw/canvas/font.h"
 #include "base/rgb.h"
+#include "draw/canvas/font.h"
 
 namespace synpo {
 
@@ -64,8 +64,8 @@ class Canvas {
 
   void text(int x, int y, const std::string& text, int size, Rgb colour, Across across = Across::kLeft,
             Upright upright = Upright::kTop);
-  // Reading upwards: the text's end is at the top. x is its middle across the line, y where the text begins (kLeft: bottom
-  // end), has its centre, or ends.
+  // Reading upwards: the text's end is at the top. x is its middle across the line, y where the text begins (kLeft:
+  // bottom end), has its centre, or ends.
   void text_up(int x, int y, const std::string& text, int size, Rgb colour, Across along = Across::kLeft);
 
   // Pixels of text that fell outside the picture: 0 in a picture that is laid out well.

@@ -17,8 +17,8 @@ struct TextMask {
 
 class Font {
  public:
-  // `path` empty: $SYNPO_FONT, else DejaVu Sans where the distributions put it. Throws kNoInput when there is none, kData
-  // when the file is no font.
+  // `path` empty: $SYNPO_FONT, else DejaVu Sans where the distributions put it. Throws kNoInput when there is none,
+  // kData when the file is no font.
   explicit Font(const std::string& path = "");
   ~Font();
   Font(const Font&) = delete;

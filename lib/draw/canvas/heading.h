@@ -13,7 +13,8 @@ class Heading {
  public:
   Heading() = default;  // no text
   // Each is broken into lines of at most `width` pixels; either may be empty. `scale` is in pixels per point.
-  Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font, double title_pt = kTitlePt);
+  Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font,
+          double title_pt = kTitlePt);
   // With the space beneath; 0 for no text.
   int height() const;
   void draw(Canvas& canvas, int x, int y) const;

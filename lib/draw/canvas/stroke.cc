@@ -31,7 +31,8 @@ void cover_piece(Mask& mask, Point a, Point b, double radius) {
     }
 }
 
-// The shares of the way from a to b between which it is inside the box (Liang and Barsky 1984); false where it is nowhere.
+// The shares of the way from a to b between which it is inside the box (Liang and Barsky 1984); false where it is
+// nowhere.
 bool clip_piece(Point a, Point b, double left, double top, double right, double bottom, double& from, double& to) {
   from = 0;
   to = 1;
@@ -63,7 +64,8 @@ Mask stroke_mask(const std::vector<Point>& points, double width, const Dash& das
         const double begin = before + from * length, end = before + to * length;
         for (double start = std::floor(begin / period) * period; start < end; start += period) {
           const double low = std::max(start, begin), high = std::min(start + dash.on, end);
-          if (low < high) cover_piece(mask, between(a, b, (low - before) / length), between(a, b, (high - before) / length), radius);
+          if (low < high)
+            cover_piece(mask, between(a, b, (low - before) / length), between(a, b, (high - before) / length), radius);
         }
       }
     }
@@ -91,7 +93,8 @@ Mask band_mask(const std::vector<Point>& upper, const std::vector<Point>& lower,
       for (int row = std::max(0, int(std::floor(top))); row < last; ++row)
         covered[row] += std::max(0.0, std::min(bottom, row + 1.0) - std::max(top, double(row))) / kSamples;
     }
-    for (int row = 0; row < clip.height; ++row) mask.coverage[size_t(row) * clip.width + column] = byte_of(covered[row]);
+    for (int row = 0; row < clip.height; ++row)
+      mask.coverage[size_t(row) * clip.width + column] = byte_of(covered[row]);
   }
   return mask;
 }

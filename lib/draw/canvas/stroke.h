@@ -11,8 +11,8 @@ struct Dash {
   double on = 0, off = 0;
 };
 
-// The line through the points, `width` pixels wide, with round joins and ends; a single point is a disc twice as wide. What lies outside
-// `clip` is left out.
+// The line through the points, `width` pixels wide, with round joins and ends; a single point is a disc twice as wide.
+// What lies outside `clip` is left out.
 Mask stroke_mask(const std::vector<Point>& points, double width, const Dash& dash, const Box& clip);
 
 // What lies between two lines with the same x, which rise: `upper` has the smaller y.

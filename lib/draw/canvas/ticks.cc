@@ -33,9 +33,11 @@ Ticks nice_ticks(double low, double high, int most) {
     fail(Exit::kData, "an axis from ", low, " to ", high, " cannot be drawn");
   Ticks ticks;
   // A step of a `most`-th of the range may be one tick too many.
-  for (ticks.step = nice_step((high - low) / most); last_multiple(high, ticks.step) - first_multiple(low, ticks.step) + 1 > most;)
+  for (ticks.step = nice_step((high - low) / most);
+       last_multiple(high, ticks.step) - first_multiple(low, ticks.step) + 1 > most;)
     ticks.step = nice_step(ticks.step * 1.5);
-  for (double k = first_multiple(low, ticks.step); k <= last_multiple(high, ticks.step); ++k) ticks.at.push_back(k * ticks.step);
+  for (double k = first_multiple(low, ticks.step); k <= last_multiple(high, ticks.step); ++k)
+    ticks.at.push_back(k * ticks.step);
   return ticks;
 }
 

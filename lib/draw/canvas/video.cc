@@ -21,14 +21,14 @@ struct Format {
   int backend;
   char code[5];
 };
-constexpr Format kFormats[] = {{".avi", cv::CAP_OPENCV_MJPEG, "MJPG"},
-                               {".mp4", cv::CAP_FFMPEG, "mp4v"},
-                               {".mkv", cv::CAP_FFMPEG, "mp4v"}};
+constexpr Format kFormats[] = {
+    {".avi", cv::CAP_OPENCV_MJPEG, "MJPG"}, {".mp4", cv::CAP_FFMPEG, "mp4v"}, {".mkv", cv::CAP_FFMPEG, "mp4v"}};
 
 const Format& format_of(const std::string& path) {
   for (const Format& format : kFormats)
     if (std::filesystem::path(path).extension() == format.extension) return format;
-  fail(Exit::kUsage, "cannot tell the format of the video '", path, "': expected a name that ends in .avi, .mp4 or .mkv");
+  fail(Exit::kUsage, "cannot tell the format of the video '", path,
+       "': expected a name that ends in .avi, .mp4 or .mkv");
 }
 
 }  // namespace
@@ -38,7 +38,8 @@ struct Video::Writer {
   cv::Mat bgr;
 };
 
-Video::Video(const std::string& path, double frames_per_second, int width, int height) : writer_(std::make_unique<Writer>()), path_(path) {
+Video::Video(const std::string& path, double frames_per_second, int width, int height)
+    : writer_(std::make_unique<Writer>()), path_(path) {
   const Format& format = format_of(path);
   const std::string temporary = path + ".part" + std::to_string(getpid()) + format.extension;
   const int fd = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
@@ -48,9 +49,11 @@ Video::Video(const std::string& path, double frames_per_second, int width, int h
   writer_->bgr = cv::Mat(height, width, CV_8UC3);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const auto& c = format.code;
-  if (!writer_->video.open(temporary_, format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]), frames_per_second, {width, height})) {
+  if (!writer_->video.open(temporary_, format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]),
+                           frames_per_second, {width, height})) {
     unlink(temporary_.c_str());
-    fail(Exit::kUsage, "cannot write the video '", path, "': this OpenCV cannot write ", format.extension, ", but .avi it can");
+    fail(Exit::kUsage, "cannot write the video '", path, "': this OpenCV cannot write ", format.extension,
+         ", but .avi it can");
   }
 }
 
@@ -77,7 +80,8 @@ void Video::finish() {
   int whole = 0;
   while (read.isOpened() && read.grab()) ++whole;
   if (whole != frames_) fail(Exit::kIo, "cannot write '", path_, "': ", whole, " of ", frames_, " frames got there");
-  if (rename(temporary_.c_str(), path_.c_str()) != 0) fail(Exit::kCantCreate, "cannot create '", path_, "': ", std::strerror(errno));
+  if (rename(temporary_.c_str(), path_.c_str()) != 0)
+    fail(Exit::kCantCreate, "cannot create '", path_, "': ", std::strerror(errno));
   temporary_.clear();
 }
 

@@ -7,8 +7,8 @@
 
 namespace synpo {
 
-// The end of the file's name chooses the format: .avi is Motion JPEG and always there, others (.mp4, .mkv) need OpenCV's ffmpeg. A file
-// beside `path` takes the name in finish(); unfinished, nothing is left behind.
+// The end of the file's name chooses the format: .avi is Motion JPEG and always there, others (.mp4, .mkv) need
+// OpenCV's ffmpeg. A file beside `path` takes the name in finish(); unfinished, nothing is left behind.
 class Video {
  public:
   // Throws kUsage for a format that cannot be written, kCantCreate where the file cannot be made.

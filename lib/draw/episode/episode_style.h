@@ -6,9 +6,9 @@
 namespace synpo {
 
 struct EpisodeStyle {
-  std::string title;    // empty: environment and task
-  int64_t strip = 12;   // pictures of what the agent saw, beneath; 0: none
-  double scale = 2;     // pixels per point
+  std::string title;   // empty: environment and task
+  int64_t strip = 12;  // pictures of what the agent saw, beneath; 0: none
+  double scale = 2;    // pixels per point
 };
 
 }  // namespace synpo

@@ -21,7 +21,8 @@ std::vector<int> spread_moments(int steps, const std::vector<int>& events, int c
   const int last = steps - 1;
   std::vector<int> chosen;
   const auto choose = [&](int moment) {
-    if (int(chosen.size()) < count && std::find(chosen.begin(), chosen.end(), moment) == chosen.end()) chosen.push_back(moment);
+    if (int(chosen.size()) < count && std::find(chosen.begin(), chosen.end(), moment) == chosen.end())
+      chosen.push_back(moment);
   };
   choose(0);
   choose(last);
@@ -33,7 +34,9 @@ std::vector<int> spread_moments(int steps, const std::vector<int>& events, int c
   const int keys = int(chosen.size()), wanted = std::min(count, steps);
   if (gaps.empty()) return chosen;
   for (int i = keys; i < wanted; ++i)
-    ++std::max_element(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) { return a.longest() < b.longest(); })->inside;
+    ++std::max_element(gaps.begin(), gaps.end(), [](const Gap& a, const Gap& b) {
+        return a.longest() < b.longest();
+      })->inside;
   for (const Gap& gap : gaps)
     for (int i = 1; i <= gap.inside; ++i) chosen.push_back(gap.from + gap.length * i / (gap.inside + 1));
   std::sort(chosen.begin(), chosen.end());

@@ -7,8 +7,9 @@
 
 namespace synpo {
 
-// Of `steps` actions, numbered from 0, at most `count`, rising: the first, the last and `events`, and others as evenly between them as can be. Where
-// `count` is below the number of the former, the first, the last and then the earliest events come before others.
+// Of `steps` actions, numbered from 0, at most `count`, rising: the first, the last and `events`, and others as evenly
+// between them as can be. Where `count` is below the number of the former, the first, the last and then the earliest
+// events come before others.
 std::vector<int> spread_moments(int steps, const std::vector<int>& events, int count);
 
 // "1 step", "2 steps"

@@ -11,7 +11,8 @@ constexpr double kTextPt = 9, kLabelPt = 7.5, kLinePt = 10;
 
 }  // namespace
 
-Strip::Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px, const Font& font)
+Strip::Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width,
+             const Pixels& px, const Font& font)
     : heading_(std::move(heading)), pictures_(std::move(pictures)), px_(px), gap_(px(8)), line_(px(1.5)),
       side_(std::max(1, ((width + gap_) / columns - gap_ - 2 * line_) / unit) * unit + 2 * line_),
       columns_(std::min(columns, (width + gap_) / (side_ + gap_))),
@@ -30,7 +31,8 @@ void Strip::draw(Canvas& canvas, int x, int y) const {
   if (pictures_.empty()) return;
   canvas.text(x, y, heading_, px_(kTextPt), kSoftInk);
   for (size_t i = 0; i < pictures_.size(); ++i) {
-    const int left = x + int(i) % columns_ * (side_ + columns_gap_), top = y + heading_height() + int(i) / columns_ * row_height();
+    const int left = x + int(i) % columns_ * (side_ + columns_gap_),
+              top = y + heading_height() + int(i) / columns_ * row_height();
     canvas.fill({left, top, side_, side_}, pictures_[i].frame);
     pictures_[i].draw(canvas, {left + line_, top + line_, side_ - 2 * line_, side_ - 2 * line_});
     int below = top + side_ + px_(4);

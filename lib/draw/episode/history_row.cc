@@ -12,7 +12,8 @@ constexpr double kTextPt = 9;
 }  // namespace
 
 HistoryRow::HistoryRow(int width, int unit, const Pixels& px)
-    : px_(px), side_(std::max(1, (width - (kHistory - 1) * px(8)) / kHistory / unit) * unit), gap_((width - kHistory * side_) / (kHistory - 1)) {}
+    : px_(px), side_(std::max(1, (width - (kHistory - 1) * px(8)) / kHistory / unit) * unit),
+      gap_((width - kHistory * side_) / (kHistory - 1)) {}
 
 int HistoryRow::height() const { return px_(kTextPt) + px_(8) + side_ + px_(6) + px_(kTextPt); }
 
@@ -25,7 +26,8 @@ void HistoryRow::draw(Canvas& canvas, int x, int y, const std::string& heading, 
     const int ago = kHistory - 1 - i;
     draw({x, top, side_, side_}, i, missing);
     const std::string when = ago == 0 ? "now" : concat(ago, ago == 1 ? " step ago" : " steps ago");
-    canvas.text(x + side_ / 2, top + side_ + px_(6), missing ? "before the start: zero" : when, text, kInk, Across::kCentre);
+    canvas.text(x + side_ / 2, top + side_ + px_(6), missing ? "before the start: zero" : when, text, kInk,
+                Across::kCentre);
   }
 }
 

@@ -13,7 +13,8 @@ class HistoryRow {
   HistoryRow(int width, int unit, const Pixels& px);
 
   int height() const;
-  // `draw` draws number i of kHistory, the oldest 0; of an episode that has had `count` states the first ones are missing.
+  // `draw` draws number i of kHistory, the oldest 0; of an episode that has had `count` states the first ones are
+  // missing.
   void draw(Canvas& canvas, int x, int y, const std::string& heading, int count,
             const std::function<void(const Box& box, int i, bool missing)>& draw) const;
 

@@ -5,8 +5,8 @@
 #include <map>
 
 #include "base/error.h"
-#include "draw/colour.h"
 #include "draw/canvas/stroke.h"
+#include "draw/colour.h"
 
 namespace synpo {
 namespace {
@@ -14,7 +14,8 @@ namespace {
 constexpr double kLaneShare = 0.15, kLineShare = 0.09, kCasingShare = 0.15;  // of a cell
 constexpr int kArrowEvery = 3;
 
-// A step that moves: its direction, and how far its lane lies beside the middle, to the right of rising rows and columns.
+// A step that moves: its direction, and how far its lane lies beside the middle, to the right of rising rows and
+// columns.
 struct Move {
   int step;
   Point direction, aside;
@@ -37,7 +38,8 @@ std::vector<Move> moves_of(const PlanGrid& place, const std::vector<int>& cells)
 void draw_piece(Canvas& canvas, Point a, Point b, double width, Rgb colour) {
   const int reach = int(std::ceil(width)) + 1;
   const int left = int(std::floor(std::min(a.x, b.x))) - reach, top = int(std::floor(std::min(a.y, b.y))) - reach;
-  const Box around = {left, top, int(std::ceil(std::max(a.x, b.x))) + reach - left, int(std::ceil(std::max(a.y, b.y))) + reach - top};
+  const Box around = {left, top, int(std::ceil(std::max(a.x, b.x))) + reach - left,
+                      int(std::ceil(std::max(a.y, b.y))) + reach - top};
   canvas.paint(stroke_mask({a, b}, width, {}, around), colour);
 }
 
@@ -62,7 +64,8 @@ std::vector<PathCorner> path_corners(const PlanGrid& place, const std::vector<in
   const std::vector<Move> moves = moves_of(place, cells);
   std::vector<PathCorner> corners = {{place.centre(cells[0]), 0}};
   const auto add = [&](Point middle, Point aside, Point along, double share, int step) {
-    corners.push_back({{middle.x + aside.x + along.x * share * place.cell, middle.y + aside.y + along.y * share * place.cell}, step});
+    corners.push_back(
+        {{middle.x + aside.x + along.x * share * place.cell, middle.y + aside.y + along.y * share * place.cell}, step});
   };
   for (size_t i = 0; i < moves.size(); ++i) {
     const Move& in = moves[i];
@@ -91,8 +94,8 @@ void draw_path(Canvas& canvas, const PlanGrid& place, const std::vector<int>& ce
   const std::vector<PathCorner> corners = path_corners(place, cells);
   const double line = std::max(1.5, kLineShare * place.cell), casing = std::max(line + 1, kCasingShare * place.cell);
   const auto colour = [&](size_t i) { return step_colour(corners[i].step, steps); };
-  // A piece's casing comes just before it, so that a later way is seen to cross an earlier one; its beginning is drawn over by
-  // the piece before it once more, lest the casing cut that one's end.
+  // A piece's casing comes just before it, so that a later way is seen to cross an earlier one; its beginning is drawn
+  // over by the piece before it once more, lest the casing cut that one's end.
   for (size_t i = 1; i < corners.size(); ++i) {
     draw_piece(canvas, corners[i - 1].at, corners[i].at, casing, ground);
     if (i > 1) draw_piece(canvas, corners[i - 2].at, corners[i - 1].at, line, colour(i - 1));
@@ -111,7 +114,8 @@ void draw_path(Canvas& canvas, const PlanGrid& place, const std::vector<int>& ce
 
 bool has_counts(int cell, const std::vector<int>& cells) {
   const auto counts = counts_of(cells);
-  return count_size(cell) > 0 && std::any_of(counts.begin(), counts.end(), [](const auto& count) { return count.second > kPathLanes; });
+  return count_size(cell) > 0 &&
+         std::any_of(counts.begin(), counts.end(), [](const auto& count) { return count.second > kPathLanes; });
 }
 
 void draw_counts(Canvas& canvas, const PlanGrid& place, const std::vector<int>& cells) {
@@ -128,7 +132,8 @@ void draw_counts(Canvas& canvas, const PlanGrid& place, const std::vector<int>& 
 }
 
 void draw_count_sign(Canvas& canvas, const Box& box) {
-  canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight, Upright::kMiddle);
+  canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight,
+              Upright::kMiddle);
 }
 
 }  // namespace synpo

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "draw/canvas/ticks.h"
 #include "draw/colour.h"
 #include "draw/episode/path.h"
-#include "draw/canvas/ticks.h"
 
 namespace synpo {
 namespace {
@@ -25,14 +25,19 @@ std::vector<int> mark_rows(const std::vector<TimeMark>& marks, const Box& bar, i
 
 }  // namespace
 
-int time_bar_width(const Font& font, const Pixels& px) { return px(kGapPt) + px(kBarPt) + px(5) + font.width("300", px(kTextPt)); }
+int time_bar_width(const Font& font, const Pixels& px) {
+  return px(kGapPt) + px(kBarPt) + px(5) + font.width("300", px(kTextPt));
+}
 
-void draw_time_bar(Canvas& canvas, int x, int y, int height, int steps, const std::vector<TimeMark>& marks, const Pixels& px) {
+void draw_time_bar(Canvas& canvas, int x, int y, int height, int steps, const std::vector<TimeMark>& marks,
+                   const Pixels& px) {
   const Box bar = {x + px(kGapPt), y + px(16), px(kBarPt), height - px(22)};
   const int text = px(kTextPt), sign = px(kSignPt);
   for (int line = 0; line < bar.height; ++line)
     canvas.fill({bar.x, bar.y + line, bar.width, 1}, time_colour(double(line) / std::max(1, bar.height - 1)));
-  const auto row = [&](double step) { return bar.y + int(std::lround(bar.height * (step - 1) / std::max(1, steps - 1))); };
+  const auto row = [&](double step) {
+    return bar.y + int(std::lround(bar.height * (step - 1) / std::max(1, steps - 1)));
+  };
   const auto label = [&](int step) {
     canvas.fill({bar.right(), row(step), px(3), px(0.6)}, kSoftInk);
     canvas.text(bar.right() + px(5), row(step), concat(step), text, kInk, Across::kLeft, Upright::kMiddle);
@@ -41,11 +46,13 @@ void draw_time_bar(Canvas& canvas, int x, int y, int height, int steps, const st
   if (steps > 1) {
     labels.push_back(steps);
     for (const double at : nice_ticks(1, steps, 8).at)
-      if (at == std::floor(at) && row(at) - row(1) >= 2 * text && row(steps) - row(at) >= 2 * text) labels.push_back(int(at));
+      if (at == std::floor(at) && row(at) - row(1) >= 2 * text && row(steps) - row(at) >= 2 * text)
+        labels.push_back(int(at));
   }
   for (const int step : labels) label(step);
   const std::vector<int> rows = mark_rows(marks, bar, sign, row);
-  for (size_t i = 0; i < marks.size(); ++i) marks[i].sign(canvas, {bar.x + (bar.width - sign) / 2, rows[i] - sign / 2, sign, sign});
+  for (size_t i = 0; i < marks.size(); ++i)
+    marks[i].sign(canvas, {bar.x + (bar.width - sign) / 2, rows[i] - sign / 2, sign, sign});
   canvas.text(bar.x - (sign - bar.width) / 2, bar.y - px(14), "step", text, kSoftInk);
 }
 

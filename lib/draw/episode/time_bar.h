@@ -15,6 +15,7 @@ struct TimeMark {
 // With its numbers, for up to 300 steps, and the space before it.
 int time_bar_width(const Font& font, const Pixels& px);
 // In a column of that width beside a plan.
-void draw_time_bar(Canvas& canvas, int x, int y, int height, int steps, const std::vector<TimeMark>& marks, const Pixels& px);
+void draw_time_bar(Canvas& canvas, int x, int y, int height, int steps, const std::vector<TimeMark>& marks,
+                   const Pixels& px);
 
 }  // namespace synpo

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
-#include "draw/episode/history_row.h"
 #include "draw/canvas/key.h"
+#include "draw/colour.h"
+#include "draw/episode/history_row.h"
 #include "draw/grid/maze_picture.h"
 #include "world/grid/planner.h"
 
@@ -27,7 +27,8 @@ void draw_whole(Canvas& canvas, int x, int y, int cell, const ViewMoment& moment
   const int row = now.agent / kGridSide, column = now.agent % kGridSide;
   const int top = std::max(0, row - radius), left = std::max(0, column - radius);
   const int bottom = std::min(kGridSide - 1, row + radius), right = std::min(kGridSide - 1, column + radius);
-  canvas.frame({x + left * cell, y + top * cell, (right - left + 1) * cell, (bottom - top + 1) * cell}, std::max(2, cell / 7), kWindow);
+  canvas.frame({x + left * cell, y + top * cell, (right - left + 1) * cell, (bottom - top + 1) * cell},
+               std::max(2, cell / 7), kWindow);
 }
 
 std::vector<KeyEntry> key_entries(const ViewMoment& moment) {
@@ -43,13 +44,16 @@ std::vector<KeyEntry> key_entries(const ViewMoment& moment) {
   key.push_back({{colour_sign(kPaperWall), seen(kWall)}, "wall"});
   key.push_back({{colour_sign(kPaperFloor), seen(kFloor)}, "floor"});
   key.push_back({{seen(kUnseen)}, "not seen"});
-  key.push_back({{[](Canvas& canvas, const Box& box) { canvas.frame(box, std::max(2, box.width / 7), kWindow); }}, "window"});
+  key.push_back(
+      {{[](Canvas& canvas, const Box& box) { canvas.frame(box, std::max(2, box.width / 7), kWindow); }}, "window"});
   return key;
 }
 
 std::string words(const ViewMoment& moment) {
   std::string out = concat(moment.maze.name, ", task ", moment.task.name(), ", step ", moment.state.steps);
-  return out + (moment.expert_action < 0 ? ": success" : concat("; the expert's next action: ", kGridActionNames[moment.expert_action]));
+  return out + (moment.expert_action < 0
+                    ? ": success"
+                    : concat("; the expert's next action: ", kGridActionNames[moment.expert_action]));
 }
 
 }  // namespace
@@ -57,8 +61,7 @@ std::string words(const ViewMoment& moment) {
 void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const GridFrame* frame, int radius) {
   uint8_t colours[kGridCells] = {};
   if (frame) draw_view(maze, *frame, radius, colours);
-  for (int at = 0; at < kGridCells; ++at)
-    canvas.fill(maze_grid(x, y, cell).box(at), kPalette[colours[at]]);
+  for (int at = 0; at < kGridCells; ++at) canvas.fill(maze_grid(x, y, cell).box(at), kPalette[colours[at]]);
 }
 
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps) {
@@ -98,9 +101,10 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
   draw_seen(canvas, right_x, panels_y, cell, moment.maze, &moment.state.now, style.radius);
 
   if (style.history)
-    row.draw(canvas, margin, panels_y + side + px(14), "(c) the network's input: the last four pictures", moment.history.count,
-             [&](const Box& box, int i, bool missing) {
-               draw_seen(canvas, box.x, box.y, box.width / kGridSide, moment.maze, missing ? nullptr : &moment.history.frames[i], style.radius);
+    row.draw(canvas, margin, panels_y + side + px(14), "(c) the network's input: the last four pictures",
+             moment.history.count, [&](const Box& box, int i, bool missing) {
+               draw_seen(canvas, box.x, box.y, box.width / kGridSide, moment.maze,
+                         missing ? nullptr : &moment.history.frames[i], style.radius);
              });
 
   key.draw(canvas, margin, key_y);

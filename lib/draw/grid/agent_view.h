@@ -19,10 +19,12 @@ struct ViewMoment {
   int expert_action = -1;  // what the expert does next; -1 after the end
 };
 
-// The start of the episode that `random` draws, followed by `steps` steps of the expert. Throws kUsage when its episode is shorter.
+// The start of the episode that `random` draws, followed by `steps` steps of the expert. Throws kUsage when its episode
+// is shorter.
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps);
 
-// What the agent sees, cell for cell in the colours of the network's input, `cell` pixels a cell; nullptr: nothing, all black.
+// What the agent sees, cell for cell in the colours of the network's input, `cell` pixels a cell; nullptr: nothing, all
+// black.
 void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const GridFrame* frame, int radius);
 
 struct ViewStyle {

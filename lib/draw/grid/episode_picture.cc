@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "draw/grid/agent_view.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
-#include "draw/grid/maze_picture.h"
-#include "draw/episode/path.h"
+#include "draw/colour.h"
 #include "draw/episode/film_strip.h"
+#include "draw/episode/path.h"
 #include "draw/episode/time_bar.h"
+#include "draw/grid/agent_view.h"
+#include "draw/grid/maze_picture.h"
 
 namespace synpo {
 namespace {
@@ -89,7 +89,8 @@ std::vector<StripPicture> strip_pictures(const Film& film, int64_t count) {
     std::string label = concat(i + 1, ": ", kGridActionNames[film.actions[i]]);
     if (picked >= 0) label += concat(" ", kTreasureLetters[picked]);
     pictures.push_back({step_colour(i + 1, film.steps()), label, [&film, i](Canvas& canvas, const Box& box) {
-                          draw_seen(canvas, box.x, box.y, box.width / kGridSide, film.maze, &film.states[i].now, film.radius);
+                          draw_seen(canvas, box.x, box.y, box.width / kGridSide, film.maze, &film.states[i].now,
+                                    film.radius);
                         }});
   }
   return pictures;
@@ -99,13 +100,15 @@ std::vector<StripPicture> strip_pictures(const Film& film, int64_t count) {
 
 Canvas draw_episode(const Film& film, const EpisodeStyle& style, const Font& font) {
   const Pixels px{style.scale};
-  const int margin = px(kMarginPt), side = kGridSide * px(kCellPt), inside = side + time_bar_width(font, px), window = 2 * film.radius + 1;
+  const int margin = px(kMarginPt), side = kGridSide * px(kCellPt), inside = side + time_bar_width(font, px),
+            window = 2 * film.radius + 1;
   const Heading heading(style.title.empty() ? name_of(film) : style.title, describe(film), inside, style.scale, font);
   const Key key(key_entries(film, px(kCellPt)), inside, style.scale, font);
-  const Strip strip(concat("what the agent saw as it took these steps, window ", window, " x ", window), strip_pictures(film, style.strip), kMostColumns,
-                    kGridSide, inside, px, font);
+  const Strip strip(concat("what the agent saw as it took these steps, window ", window, " x ", window),
+                    strip_pictures(film, style.strip), kMostColumns, kGridSide, inside, px, font);
 
-  const int maze_y = margin + heading.height() + px(4), key_y = maze_y + side + px(12), strip_y = key_y + key.height() + px(14);
+  const int maze_y = margin + heading.height() + px(4), key_y = maze_y + side + px(12),
+            strip_y = key_y + key.height() + px(14);
   const int bottom = strip.height() > 0 ? strip_y + strip.height() : key_y + key.height();
   Canvas canvas(inside + 2 * margin, bottom + margin, font);
   heading.draw(canvas, margin, margin);
@@ -124,7 +127,8 @@ Canvas draw_episode_frame(const Film& film, int moment, const EpisodeStyle& styl
   const auto even = [](int n) { return n + n % 2; };
   Canvas canvas(even(2 * margin + 2 * side + between), even(panels_y + side + margin), font);
   const int width = 2 * side + between;
-  canvas.text(margin, margin, font.fitted(style.title.empty() ? name_of(film) : style.title, title, width), title, kInk);
+  canvas.text(margin, margin, font.fitted(style.title.empty() ? name_of(film) : style.title, title, width), title,
+              kInk);
   std::string words;
   if (moment == film.steps()) {
     words = concat(outcome(film), " after step ", moment);

@@ -10,7 +10,8 @@ namespace synpo {
 
 Canvas draw_episode(const Film& film, const EpisodeStyle& style, const Font& font);
 
-// The maze with the way so far, and what the agent sees, after `moment` steps. All frames of a film are of one size, with even sides.
+// The maze with the way so far, and what the agent sees, after `moment` steps. All frames of a film are of one size,
+// with even sides.
 Canvas draw_episode_frame(const Film& film, int moment, const EpisodeStyle& style, const Font& font);
 
 }  // namespace synpo

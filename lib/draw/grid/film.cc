@@ -6,7 +6,8 @@
 
 namespace synpo {
 
-Film play_film(const Maze& maze, const Task& task, const GridState& start, const std::vector<uint8_t>& actions, int radius) {
+Film play_film(const Maze& maze, const Task& task, const GridState& start, const std::vector<uint8_t>& actions,
+               int radius) {
   Film film{maze, task, radius, {start}, actions, {}};
   GridState state = start;
   for (const uint8_t action : actions) {
@@ -47,7 +48,8 @@ std::string describe(const Film& film) {
     }
   }
   const int fewest = Planner(film.maze).steps_to_success(film.task, film.states[0]);
-  std::string out = describe_end(outcome(film), film.results, fewest) + (picks.empty() ? "; no treasure picked" : picks);
+  std::string out =
+      describe_end(outcome(film), film.results, fewest) + (picks.empty() ? "; no treasure picked" : picks);
   if (bumps > 0) out += "; " + counted(bumps, "step", "steps") + " into walls";
   if (empty_picks > 0) out += "; " + counted(empty_picks, "pick", "picks") + " where nothing lies";
   return out;

@@ -20,7 +20,8 @@ struct Film {
 };
 
 // Plays the actions from the start; at least one.
-Film play_film(const Maze& maze, const Task& task, const GridState& start, const std::vector<uint8_t>& actions, int radius);
+Film play_film(const Maze& maze, const Task& task, const GridState& start, const std::vector<uint8_t>& actions,
+               int radius);
 
 // The treasure that action number `i`, from 0, picks; -1 where it picks none.
 int treasure_picked(const Film& film, int i);

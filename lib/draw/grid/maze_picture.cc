@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
+#include "draw/colour.h"
 
 namespace synpo {
 
@@ -67,7 +67,8 @@ Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Fo
   for (int i = 0; i < count; ++i) {
     const int x = margin + i % columns * (side + between), y = top + i / columns * (side + below + px(8));
     draw_maze(canvas, x, y, cell, mazes[i]);
-    canvas.text(x + side / 2, y + side + px(6), font.fitted(mazes[i].name, label, side + between - px(4)), label, kInk, Across::kCentre);
+    canvas.text(x + side / 2, y + side + px(6), font.fitted(mazes[i].name, label, side + between - px(4)), label, kInk,
+                Across::kCentre);
   }
   return canvas;
 }

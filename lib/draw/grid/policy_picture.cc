@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/key.h"
+#include "draw/colour.h"
 #include "draw/grid/maze_picture.h"
 #include "stats/report/text_table.h"
 
@@ -67,8 +67,8 @@ void draw_treasure_letter(Canvas& canvas, const Box& box, int treasure) {
   const Box corner = {box.x, box.y, size, size};
   if (size < 6) return;
   canvas.fill(corner, kPaperTreasures[treasure]);
-  canvas.text(corner.x + size / 2, corner.y + size / 2, std::string(1, kTreasureLetters[treasure]), size * 4 / 5, ink_on(kPaperTreasures[treasure]),
-              Across::kCentre, Upright::kMiddle);
+  canvas.text(corner.x + size / 2, corner.y + size / 2, std::string(1, kTreasureLetters[treasure]), size * 4 / 5,
+              ink_on(kPaperTreasures[treasure]), Across::kCentre, Upright::kMiddle);
 }
 
 void draw_stage(Canvas& canvas, const PlanGrid& place, const Maze& maze, const PolicyStage& stage) {
@@ -110,12 +110,15 @@ Key make_key(const std::vector<PolicyStage>& stages, int width, double scale, co
       });
     return signs;
   };
-  const bool all_agree = std::all_of(stages.begin(), stages.end(), [](const PolicyStage& s) { return s.agreeing() == int(s.cells.size()); });
+  const bool all_agree = std::all_of(stages.begin(), stages.end(),
+                                     [](const PolicyStage& s) { return s.agreeing() == int(s.cells.size()); });
   std::vector<KeyEntry> entries = {{arrows(true), "best action is optimal; probability 0.4, 0.7, 1"}};
   if (!all_agree) entries.push_back({arrows(false), "not optimal"});
-  entries.push_back({{[](Canvas& canvas, const Box& box) { draw_action(canvas, box, kPick, action_colour(true, 1)); }}, "PICK"});
+  entries.push_back(
+      {{[](Canvas& canvas, const Box& box) { draw_action(canvas, box, kPick, action_colour(true, 1)); }}, "PICK"});
   if (!all_agree) {
-    entries.push_back({{[](Canvas& canvas, const Box& box) { draw_optimal(canvas, box, kRight); }}, "optimal: across this side"});
+    entries.push_back(
+        {{[](Canvas& canvas, const Box& box) { draw_optimal(canvas, box, kRight); }}, "optimal: across this side"});
     entries.push_back({{[](Canvas& canvas, const Box& box) { draw_optimal(canvas, box, kPick); }}, "optimal: PICK"});
   }
   return Key(entries, width, scale, font);
@@ -137,16 +140,18 @@ PolicyStage compare_to_planner(const Maze& maze, const Planner& planner, const T
     const auto best = std::max_element(p.begin(), p.end());
     const std::array<int, kGridActions> q = planner.q_cents(task, here);
     PolicyCell cell{here.now.agent, int(best - p.begin()), *best, {}};
-    for (int action = 0; action < kGridActions; ++action) cell.optimal[action] = q[action] == *std::max_element(q.begin(), q.end());
+    for (int action = 0; action < kGridActions; ++action)
+      cell.optimal[action] = q[action] == *std::max_element(q.begin(), q.end());
     stage.cells.push_back(cell);
   }
   return stage;
 }
 
-Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages, const PolicyPictureStyle& style,
-                   const Font& font) {
+Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages,
+                   const PolicyPictureStyle& style, const Font& font) {
   const Pixels px{style.scale};
-  const int margin = px(kMarginPt), cell = px(kCellPt), side = kGridSide * cell, between = px(kBetweenPt), title = px(kPanelTitlePt);
+  const int margin = px(kMarginPt), cell = px(kCellPt), side = kGridSide * cell, between = px(kBetweenPt),
+            title = px(kPanelTitlePt);
   const int count = int(stages.size()), inside = count * side + (count - 1) * between;
   const Heading heading(style.title, style.caption, inside, style.scale, font);
   const Key key = make_key(stages, inside, style.scale, font);

@@ -14,7 +14,7 @@ namespace synpo {
 
 struct PolicyCell {
   uint8_t cell;
-  int action;                              // of the highest probability, the first of them
+  int action;  // of the highest probability, the first of them
   double probability;
   std::array<bool, kGridActions> optimal;  // by the planner; several where ways are equally short
   bool agrees() const { return optimal[size_t(action)]; }
@@ -37,7 +37,7 @@ struct PolicyPictureStyle {
 };
 
 // The stages side by side.
-Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages, const PolicyPictureStyle& style,
-                   const Font& font);
+Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages,
+                   const PolicyPictureStyle& style, const Font& font);
 
 }  // namespace synpo

@@ -7,7 +7,8 @@
 
 namespace synpo {
 
-// With colours the cells are blocks, darker towards the end; without them walls are ####. Ends with what describe() says.
+// With colours the cells are blocks, darker towards the end; without them walls are ####. Ends with what describe()
+// says.
 std::string terminal_path(const Film& film, TerminalColour colour);
 
 }  // namespace synpo

@@ -1,4 +1,5 @@
-// A moment of an episode in a kitchen: the kitchen from above, what the agent sees of it, and what the network's features are made of.
+// A moment of an episode in a kitchen: the kitchen from above, what the agent sees of it, and what the network's
+// features are made of.
 #pragma once
 #include <string>
 
@@ -14,7 +15,8 @@ struct KitchenMoment {
   int expert_action = -1;  // what the expert does next; -1 after the end
 };
 
-// The start of the episode that `random` draws, followed by `steps` steps of the expert. Throws kUsage when its episode is shorter.
+// The start of the episode that `random` draws, followed by `steps` steps of the expert. Throws kUsage when its episode
+// is shorter.
 KitchenMoment kitchen_moment(const KitchenSet& world, EnvTask pair, Random random, int64_t steps);
 
 struct KitchenViewStyle {

@@ -3,13 +3,13 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
-#include "draw/kitchen/kitchen_moment.h"
-#include "draw/episode/path.h"
-#include "draw/episode/film_strip.h"
 #include "draw/canvas/stroke.h"
+#include "draw/colour.h"
+#include "draw/episode/film_strip.h"
+#include "draw/episode/path.h"
 #include "draw/episode/time_bar.h"
+#include "draw/kitchen/kitchen_moment.h"
 
 namespace synpo {
 namespace {
@@ -49,14 +49,17 @@ void draw_turns(Canvas& canvas, const PlanGrid& place, const KitchenFilm& film, 
     const Point centre = place.centre(plan_cell(film.kitchen, to.row, to.column));
     const Point ahead = {double(kColumnStep[to.heading / 90]), double(kRowStep[to.heading / 90])};
     const double cell = place.cell;
-    const auto tip = [&](double share) { return Point{centre.x + ahead.x * share * cell, centre.y + ahead.y * share * cell}; };
+    const auto tip = [&](double share) {
+      return Point{centre.x + ahead.x * share * cell, centre.y + ahead.y * share * cell};
+    };
     draw_arrowhead(canvas, tip(0.49), ahead, 0.33 * cell, paper_floor(film.kitchen.hash)[0]);
     draw_arrowhead(canvas, tip(0.46), ahead, 0.26 * cell, step_colour(i + 1, film.steps()));
   }
 }
 
 void draw_turn_sign(Canvas& canvas, const Box& box) {
-  draw_arrowhead(canvas, {box.x + box.width / 2.0, box.y + 0.2 * box.height}, {0, -1}, 0.6 * box.height, time_colour(0.5));
+  draw_arrowhead(canvas, {box.x + box.width / 2.0, box.y + 0.2 * box.height}, {0, -1}, 0.6 * box.height,
+                 time_colour(0.5));
 }
 
 void draw_line(Canvas& canvas, Point from, Point to, double width, const Dash& dash, Rgb colour) {
@@ -136,10 +139,12 @@ void draw_way(Canvas& canvas, const PlanGrid& place, const KitchenFilm& film, in
   for (int i = 0; i < moment; ++i) {
     const KitchenEvent event = event_of(film, i);
     if (event.deed == Deed::kNone) continue;
-    const Box target = event.deed == Deed::kPicked ? object_place(place, film, event.thing) : receptacle_box(place, film.kitchen, event.thing);
+    const Box target = event.deed == Deed::kPicked ? object_place(place, film, event.thing)
+                                                   : receptacle_box(place, film.kitchen, event.thing);
     if (event.deed == Deed::kPut) frame_receptacle(canvas, target, std::max(2, place.cell / 6), colour_of_end(film, i));
     const Point from = place.centre(cells[size_t(i)]);
-    draw_grasp(canvas, from, event.deed == Deed::kPicked ? middle_of(target) : nearest(target, from), place.cell, step_colour(i + 1, film.steps()));
+    draw_grasp(canvas, from, event.deed == Deed::kPicked ? middle_of(target) : nearest(target, from), place.cell,
+               step_colour(i + 1, film.steps()));
   }
   draw_objects(canvas, place, film.kitchen, film.frame(0), film.task().object);
   for (int i = 0; i < moment; ++i)
@@ -167,7 +172,8 @@ std::vector<StripPicture> strip_pictures(const KitchenFilm& film, int64_t count)
   std::vector<StripPicture> pictures;
   if (count == 0) return pictures;
   for (const int i : key_moments(film, int(count)))
-    pictures.push_back({step_colour(i + 1, film.steps()), concat(i + 1, ": ", action_words(film, i)), [&film, i](Canvas& canvas, const Box& box) {
+    pictures.push_back({step_colour(i + 1, film.steps()), concat(i + 1, ": ", action_words(film, i)),
+                        [&film, i](Canvas& canvas, const Box& box) {
                           draw_kitchen_seen(canvas, box, film.world.scene(film.pair.env), film.frame(i));
                         }});
   return pictures;
@@ -175,21 +181,26 @@ std::vector<StripPicture> strip_pictures(const KitchenFilm& film, int64_t count)
 
 std::vector<KeyEntry> key_entries(const KitchenFilm& film, int cell) {
   const KitchenTask task = film.task();
-  std::vector<KeyEntry> key = {{{draw_start}, "start"},
-                               {{[](Canvas& canvas, const Box& box) { draw_looker(canvas, box, 0); }}, "end, and its heading"},
-                               {{draw_turn_sign}, "turn to this heading"},
-                               {{draw_grasp_sign}, "opens, picks or puts"}};
+  std::vector<KeyEntry> key = {
+      {{draw_start}, "start"},
+      {{[](Canvas& canvas, const Box& box) { draw_looker(canvas, box, 0); }}, "end, and its heading"},
+      {{draw_turn_sign}, "turn to this heading"},
+      {{draw_grasp_sign}, "opens, picks or puts"}};
   for (int i = 0; i < kKitchenObjects; ++i) {
     const bool wanted = i == task.object;
-    key.push_back({{wanted ? wanted_sign(i) : object_sign(i)}, concat(kKitchenObjectNames[i], wanted ? " (pick up)" : "")});
+    key.push_back(
+        {{wanted ? wanted_sign(i) : object_sign(i)}, concat(kKitchenObjectNames[i], wanted ? " (pick up)" : "")});
   }
   for (int i = 0; i < kKitchenReceptacles; ++i)
-    key.push_back({{receptacle_sign(i)}, concat(kKitchenReceptacleNames[i], i == task.receptacle ? " (put there)" : "")});
+    key.push_back(
+        {{receptacle_sign(i)}, concat(kKitchenReceptacleNames[i], i == task.receptacle ? " (put there)" : "")});
   for (int i = 0; i < film.steps(); ++i) {
     const Deed deed = event_of(film, i).deed;
     const bool wrong = film.results[size_t(i)].wrong;
-    if (deed == Deed::kPicked) key.push_back({{ring_sign(colour_of_end(film, i))}, wrong ? "wrong object" : "picked up"});
-    if (deed == Deed::kPut) key.push_back({{frame_sign(colour_of_end(film, i))}, wrong ? "wrong receptacle" : "filled"});
+    if (deed == Deed::kPicked)
+      key.push_back({{ring_sign(colour_of_end(film, i))}, wrong ? "wrong object" : "picked up"});
+    if (deed == Deed::kPut)
+      key.push_back({{frame_sign(colour_of_end(film, i))}, wrong ? "wrong receptacle" : "filled"});
   }
   if (has_counts(cell, passages(cells_up_to(film, film.steps())))) key.push_back({{draw_count_sign}, "passages"});
   return key;
@@ -211,9 +222,11 @@ Canvas draw_kitchen_episode(const KitchenFilm& film, const EpisodeStyle& style, 
   const Key key(entries, 1, style.scale, font);  // one below the other
   const int inside = std::max(wide + bar + between + key_width, px(kLeastStripPt));
   const Heading heading(style.title.empty() ? film.name() : style.title, describe(film), inside, style.scale, font);
-  const Strip strip("what the agent saw as it took these steps", strip_pictures(film, style.strip), kStripColumns, 1, inside, px, font);
+  const Strip strip("what the agent saw as it took these steps", strip_pictures(film, style.strip), kStripColumns, 1,
+                    inside, px, font);
 
-  const int plan_y = margin + heading.height() + px(4), panel = std::max(high, key.height()), strip_y = plan_y + panel + px(14);
+  const int plan_y = margin + heading.height() + px(4), panel = std::max(high, key.height()),
+            strip_y = plan_y + panel + px(14);
   const int bottom = strip.height() > 0 ? strip_y + strip.height() : plan_y + panel;
   Canvas canvas(inside + 2 * margin, bottom + margin, font);
   heading.draw(canvas, margin, margin);
@@ -226,17 +239,21 @@ Canvas draw_kitchen_episode(const KitchenFilm& film, const EpisodeStyle& style, 
 
 Canvas draw_kitchen_frame(const KitchenFilm& film, int moment, const EpisodeStyle& style, const Font& font) {
   const Pixels px{style.scale};
-  const int margin = px(kMarginPt), between = px(kMarginPt), title = px(12), text = px(kTextPt), panels_y = margin + px(17) + px(16);
-  const int cell = cell_within(film.kitchen, kFrameSidePt, px), wide = film.kitchen.columns * cell, high = film.kitchen.rows * cell;
+  const int margin = px(kMarginPt), between = px(kMarginPt), title = px(12), text = px(kTextPt),
+            panels_y = margin + px(17) + px(16);
+  const int cell = cell_within(film.kitchen, kFrameSidePt, px), wide = film.kitchen.columns * cell,
+            high = film.kitchen.rows * cell;
   const int side = std::max(px(kFrameSidePt), high), width = wide + between + side;
   const auto even = [](int n) { return n + n % 2; };
   Canvas canvas(even(2 * margin + width), even(panels_y + side + margin), font);
   canvas.text(margin, margin, font.fitted(style.title.empty() ? film.name() : style.title, title, width), title, kInk);
-  const std::string words = moment == film.steps() ? concat(outcome(film), " after step ", moment)
-                                                   : concat("step ", moment + 1, " of ", film.steps(), ": ", action_words(film, moment));
+  const std::string words = moment == film.steps()
+                                ? concat(outcome(film), " after step ", moment)
+                                : concat("step ", moment + 1, " of ", film.steps(), ": ", action_words(film, moment));
   canvas.text(margin, margin + px(17), font.fitted(words, text, width), text, kSoftInk);
   draw_way(canvas, {margin, panels_y + (side - high) / 2, cell, film.kitchen.columns}, film, moment, true);
-  draw_kitchen_seen(canvas, {margin + wide + between, panels_y, side, side}, film.world.scene(film.pair.env), film.frame(moment));
+  draw_kitchen_seen(canvas, {margin + wide + between, panels_y, side, side}, film.world.scene(film.pair.env),
+                    film.frame(moment));
   return canvas;
 }
 

@@ -8,7 +8,8 @@ namespace synpo {
 
 Canvas draw_kitchen_episode(const KitchenFilm& film, const EpisodeStyle& style, const Font& font);
 
-// The plan with the way so far, and what the agent sees, after `moment` steps. All frames of a film are of one size, with even sides.
+// The plan with the way so far, and what the agent sees, after `moment` steps. All frames of a film are of one size,
+// with even sides.
 Canvas draw_kitchen_frame(const KitchenFilm& film, int moment, const EpisodeStyle& style, const Font& font);
 
 }  // namespace synpo

@@ -1,12 +1,13 @@
 #include "draw/kitchen/kitchen_film.h"
 
 #include "base/error.h"
-#include "draw/kitchen/kitchen_moment.h"
 #include "draw/episode/episode_words.h"
+#include "draw/kitchen/kitchen_moment.h"
 
 namespace synpo {
 
-KitchenFilm play_kitchen_film(const KitchenSet& world, EnvTask pair, const WorldState& start, const std::vector<uint8_t>& actions) {
+KitchenFilm play_kitchen_film(const KitchenSet& world, EnvTask pair, const WorldState& start,
+                              const std::vector<uint8_t>& actions) {
   KitchenFilm film{world, pair, kitchen_of(world, pair.env), {start}, actions, {}};
   WorldState state = start;
   for (const uint8_t action : actions) {
@@ -19,7 +20,8 @@ KitchenFilm play_kitchen_film(const KitchenSet& world, EnvTask pair, const World
 KitchenEvent event_of(const KitchenFilm& film, int i) {
   const KitchenState before = unpack(film.states[size_t(i)]), after = unpack(film.states[size_t(i) + 1]);
   for (int door = 0; door < kKitchenDoors; ++door)
-    if ((before.doors ^ after.doors) >> door & 1) return {after.doors >> door & 1 ? Deed::kOpened : Deed::kClosed, door};
+    if ((before.doors ^ after.doors) >> door & 1)
+      return {after.doors >> door & 1 ? Deed::kOpened : Deed::kClosed, door};
   if (before.hand == after.hand) return {};
   if (before.hand == kEmptyHand) return {Deed::kPicked, after.hand};
   return {Deed::kPut, receptacle_in_reach(film.world.tables(film.pair.env), before.pose, before.doors)};
@@ -42,14 +44,26 @@ std::string describe(const KitchenFilm& film) {
   std::string deeds;
   int without_effect = 0;
   for (int i = 0; i < film.steps(); ++i) {
-    const auto add = [&](const char* name, const char* what) { deeds += concat(deeds.empty() ? "; " : ", ", name, what, " at step ", i + 1); };
+    const auto add = [&](const char* name, const char* what) {
+      deeds += concat(deeds.empty() ? "; " : ", ", name, what, " at step ", i + 1);
+    };
     const KitchenEvent event = event_of(film, i);
     switch (event.deed) {
-      case Deed::kNone: without_effect += film.results[size_t(i)].reward_cents == kStepCents + kInvalidCents; break;
-      case Deed::kOpened: add(kKitchenReceptacleNames[event.thing], " opened"); break;
-      case Deed::kClosed: add(kKitchenReceptacleNames[event.thing], " closed"); break;
-      case Deed::kPicked: add(kKitchenObjectNames[event.thing], ""); break;
-      case Deed::kPut: add(kKitchenReceptacleNames[event.thing], " filled"); break;
+      case Deed::kNone:
+        without_effect += film.results[size_t(i)].reward_cents == kStepCents + kInvalidCents;
+        break;
+      case Deed::kOpened:
+        add(kKitchenReceptacleNames[event.thing], " opened");
+        break;
+      case Deed::kClosed:
+        add(kKitchenReceptacleNames[event.thing], " closed");
+        break;
+      case Deed::kPicked:
+        add(kKitchenObjectNames[event.thing], "");
+        break;
+      case Deed::kPut:
+        add(kKitchenReceptacleNames[event.thing], " filled");
+        break;
     }
   }
   const int fewest = film.world.planner(film.pair.env).steps_to_success(film.task(), unpack(film.states[0]));
@@ -61,11 +75,16 @@ std::string describe(const KitchenFilm& film) {
 std::string action_words(const KitchenFilm& film, int i) {
   const KitchenEvent event = event_of(film, i);
   switch (event.deed) {
-    case Deed::kOpened: return concat("open ", kKitchenReceptacleNames[event.thing]);
-    case Deed::kClosed: return concat("close ", kKitchenReceptacleNames[event.thing]);
-    case Deed::kPicked: return concat("pick ", kKitchenObjectNames[event.thing]);
-    case Deed::kPut: return concat("put in ", kKitchenReceptacleNames[event.thing]);
-    default: return kKitchenActionNames[film.actions[size_t(i)]];
+    case Deed::kOpened:
+      return concat("open ", kKitchenReceptacleNames[event.thing]);
+    case Deed::kClosed:
+      return concat("close ", kKitchenReceptacleNames[event.thing]);
+    case Deed::kPicked:
+      return concat("pick ", kKitchenObjectNames[event.thing]);
+    case Deed::kPut:
+      return concat("put in ", kKitchenReceptacleNames[event.thing]);
+    default:
+      return kKitchenActionNames[film.actions[size_t(i)]];
   }
 }
 

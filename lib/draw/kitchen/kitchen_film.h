@@ -21,7 +21,8 @@ struct KitchenFilm {
 };
 
 // Plays the actions from the start; at least one.
-KitchenFilm play_kitchen_film(const KitchenSet& world, EnvTask pair, const WorldState& start, const std::vector<uint8_t>& actions);
+KitchenFilm play_kitchen_film(const KitchenSet& world, EnvTask pair, const WorldState& start,
+                              const std::vector<uint8_t>& actions);
 
 // What an action did to a thing: an object for kPicked, else a receptacle.
 enum class Deed : uint8_t { kNone, kOpened, kClosed, kPicked, kPut };
@@ -35,9 +36,11 @@ KitchenEvent event_of(const KitchenFilm& film, int i);
 // Actions: spread_moments() with those that open, close, pick up or put.
 std::vector<int> key_moments(const KitchenFilm& film, int count);
 
-// "success", "wrong object", "wrong receptacle", "timeout" or, where the actions end before the episode does, "unfinished".
+// "success", "wrong object", "wrong receptacle", "timeout" or, where the actions end before the episode does,
+// "unfinished".
 std::string outcome(const KitchenFilm& film);
-// "success after 18 steps (the fewest), reward 10.82; Mug at step 9, Fridge opened at step 17, filled at step 18; 2 steps without effect"
+// "success after 18 steps (the fewest), reward 10.82; Mug at step 9, Fridge opened at step 17, filled at step 18; 2
+// steps without effect"
 std::string describe(const KitchenFilm& film);
 // An action by what it did: "MoveAhead", "open Fridge", "pick Mug", "put in Sink"; its name where it did nothing.
 std::string action_words(const KitchenFilm& film, int i);

@@ -36,7 +36,8 @@ class Reach {
     constexpr double kPace = 0.02;
     bool in_fridge = false;
     for (double length = 0; length < kSightCells; length += kPace) {
-      const char c = kitchen.at(int(std::floor(eye.row + 0.5 + length * y)), int(std::floor(eye.column + 0.5 + length * x)));
+      const char c =
+          kitchen.at(int(std::floor(eye.row + 0.5 + length * y)), int(std::floor(eye.column + 0.5 + length * x)));
       if (c == '#' || (in_fridge && c != 'F')) return length;
       in_fridge = c == 'F';
     }
@@ -62,8 +63,10 @@ void draw_sight(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, c
     for (int x = 0; x < side; ++x) {
       int covered = 0;
       for (int i = 0; i < kFine * kFine; ++i) {
-        const double dx = mask.box.x + x + (i % kFine + 0.5) / kFine - from.x, dy = mask.box.y + y + (i / kFine + 0.5) / kFine - from.y;
-        const double angle = std::remainder(std::atan2(dx, -dy) - eye.heading * std::numbers::pi / 180, 2 * std::numbers::pi);
+        const double dx = mask.box.x + x + (i % kFine + 0.5) / kFine - from.x,
+                     dy = mask.box.y + y + (i / kFine + 0.5) / kFine - from.y;
+        const double angle =
+            std::remainder(std::atan2(dx, -dy) - eye.heading * std::numbers::pi / 180, 2 * std::numbers::pi);
         covered += std::fabs(angle) <= kHalfSight && std::hypot(dx, dy) <= reach.at(angle) * place.cell;
       }
       mask.coverage.push_back(uint8_t(255 * covered / (kFine * kFine)));
@@ -72,9 +75,11 @@ void draw_sight(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, c
 }
 
 void draw_sight_sign(Canvas& canvas, const Box& box) {
-  const Rgb shade = {uint8_t(255 - (255 - kSight.r) * 0.45), uint8_t(255 - (255 - kSight.g) * 0.45), uint8_t(255 - (255 - kSight.b) * 0.45)};
+  const Rgb shade = {uint8_t(255 - (255 - kSight.r) * 0.45), uint8_t(255 - (255 - kSight.g) * 0.45),
+                     uint8_t(255 - (255 - kSight.b) * 0.45)};
   const double top = box.y + 0.06 * box.height;
-  canvas.polygon({{box.x + box.width / 2.0, double(box.bottom())}, {double(box.x), top}, {double(box.right()), top}}, shade);
+  canvas.polygon({{box.x + box.width / 2.0, double(box.bottom())}, {double(box.x), top}, {double(box.right()), top}},
+                 shade);
 }
 
 Box object_box(const PlanGrid& place, int cell) {
@@ -87,7 +92,8 @@ Box agent_box(const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& 
   return object_box(place, plan_cell(kitchen, pose.row, pose.column));
 }
 
-void draw_objects(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenFrame& frame, int wanted) {
+void draw_objects(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenFrame& frame,
+                  int wanted) {
   const auto box_of = [&](int object) {
     const int cell = frame.objects[size_t(object)];
     return object_box(place, plan_cell(kitchen, cell / kSceneStride, cell % kSceneStride));
@@ -114,14 +120,15 @@ void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene
       for (int channel = 0; channel < 3; ++channel) {
         int sum = 0;
         for (int i = 0; i < kFine * kFine; ++i)
-          sum += fine[(size_t(y * kFine + i / kFine) * size_t(width) + size_t(x * kFine + i % kFine)) * 3 + size_t(channel)];
+          sum += fine[(size_t(y * kFine + i / kFine) * size_t(width) + size_t(x * kFine + i % kFine)) * 3 +
+                      size_t(channel)];
         rgb.push_back(uint8_t((sum + kFine * kFine / 2) / (kFine * kFine)));
       }
   canvas.picture(box, rgb.data());
 }
 
 void draw_small_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame* frame) {
-  std::array<uint8_t, kSmallView * kSmallView * 3> rgb = {};
+  std::array<uint8_t, kSmallView* kSmallView* 3> rgb = {};
   if (frame) render_small(scene, *frame, rgb.data());
   const PlanGrid place = {box.x, box.y, box.width / kSmallView, kSmallView};
   for (int at = 0; at < kSmallView * kSmallView; ++at) {

@@ -10,8 +10,8 @@ namespace synpo {
 // Environment `env` of the world as its plan.
 Kitchen kitchen_of(const KitchenSet& world, int env);
 
-// What of the floor and the furniture lies in the field of view and no farther than things can be taken, shaded; neither walls nor the Fridge let sight
-// pass.
+// What of the floor and the furniture lies in the field of view and no farther than things can be taken, shaded;
+// neither walls nor the Fridge let sight pass.
 void draw_sight(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& eye);
 void draw_sight_sign(Canvas& canvas, const Box& box);
 // The objects where they lie; `wanted`, the task's, is ringed.
@@ -24,7 +24,8 @@ void draw_moment(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, 
 
 // What the agent sees, smooth and of any size.
 void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame& frame);
-// The picture of kSmallView x kSmallView pixels that features are made of; nullptr: there is none, all black. The sides are multiples of kSmallView.
+// The picture of kSmallView x kSmallView pixels that features are made of; nullptr: there is none, all black. The sides
+// are multiples of kSmallView.
 void draw_small_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame* frame);
 
 }  // namespace synpo

@@ -5,9 +5,9 @@
 #include <numbers>
 
 #include "base/error.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/stroke.h"
+#include "draw/colour.h"
 
 namespace synpo {
 namespace {
@@ -21,12 +21,15 @@ void draw_edges(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen) {
     for (int column = 1; column < kitchen.columns; ++column) {
       const char c = kitchen.at(row, column), above = kitchen.at(row - 1, column), left = kitchen.at(row, column - 1);
       const Box box = place.box(plan_cell(kitchen, row, column));
-      if (c != above && c != '#' && above != '#') canvas.fill({box.x - line / 2, box.y - line / 2, box.width + line, line}, kPaperEdge);
-      if (c != left && c != '#' && left != '#') canvas.fill({box.x - line / 2, box.y - line / 2, line, box.height + line}, kPaperEdge);
+      if (c != above && c != '#' && above != '#')
+        canvas.fill({box.x - line / 2, box.y - line / 2, box.width + line, line}, kPaperEdge);
+      if (c != left && c != '#' && left != '#')
+        canvas.fill({box.x - line / 2, box.y - line / 2, line, box.height + line}, kPaperEdge);
     }
 }
 
-// A footprint as its front sees it: `along` from 0 to 1 to the right of one who stands before it, `out` in pixels towards him.
+// A footprint as its front sees it: `along` from 0 to 1 to the right of one who stands before it, `out` in pixels
+// towards him.
 struct Front {
   Front(const Box& box, int back) : heading((back + 2) % 4), length(heading % 2 ? box.height : box.width) {
     const double x = box.x + box.width / 2.0, y = box.y + box.height / 2.0;
@@ -51,7 +54,8 @@ double door_thickness(double cell) { return std::max(2.0, cell * 0.2); }
 // What a closed door leaves of a box, its inset included.
 Box behind_door(const Box& box, int back, int cell) {
   const int thick = int(std::lround(1.3 * door_thickness(cell))), front = (back + 2) % 4;
-  return {box.x + (front == 3 ? thick : 0), box.y + (front == 0 ? thick : 0), box.width - (front % 2 ? thick : 0), box.height - (front % 2 ? 0 : thick)};
+  return {box.x + (front == 3 ? thick : 0), box.y + (front == 0 ? thick : 0), box.width - (front % 2 ? thick : 0),
+          box.height - (front % 2 ? 0 : thick)};
 }
 
 void draw_front(Canvas& canvas, const Box& box, int back, bool open, double cell, Rgb colour) {
@@ -59,12 +63,14 @@ void draw_front(Canvas& canvas, const Box& box, int back, bool open, double cell
   if (!open) {
     const double thick = door_thickness(cell), inset = 0.5 * thick;
     const double from = 0.06, to = 0.94;
-    canvas.polygon({front.at(from, -inset), front.at(to, -inset), front.at(to, -inset - thick), front.at(from, -inset - thick)},
-                   mix(colour, kInk, 0.75));
+    canvas.polygon(
+        {front.at(from, -inset), front.at(to, -inset), front.at(to, -inset - thick), front.at(from, -inset - thick)},
+        mix(colour, kInk, 0.75));
     return;
   }
   const int frame = std::max(2, int(cell / 5));
-  canvas.fill({box.x + frame, box.y + frame, box.width - 2 * frame, box.height - 2 * frame}, paper_colour(kInsideColour));
+  canvas.fill({box.x + frame, box.y + frame, box.width - 2 * frame, box.height - 2 * frame},
+              paper_colour(kInsideColour));
   const double line = std::max(1.5, cell * 0.09), reach = front.length;
   std::vector<Point> arc;
   constexpr int kPieces = 16;
@@ -94,7 +100,9 @@ void draw_lettering(Canvas& canvas, const Box& box, int receptacle, int cell, Le
     }
   }
   const int size = std::min(across * 6 / 10, lettering == Lettering::kNames ? cell * 4 / 5 : cell * 3 / 2);
-  if (size >= 6) canvas.text(x, y, std::string(1, kKitchenReceptacleLetters[receptacle]), size, ink_on(ground), Across::kCentre, Upright::kMiddle);
+  if (size >= 6)
+    canvas.text(x, y, std::string(1, kKitchenReceptacleLetters[receptacle]), size, ink_on(ground), Across::kCentre,
+                Upright::kMiddle);
 }
 
 void draw_sink_basin(Canvas& canvas, const Box& box, int cell) {
@@ -107,7 +115,8 @@ Sign floor_sign(const Kitchen& kitchen) {
   return [tiles = paper_floor(kitchen.hash)](Canvas& canvas, const Box& box) {
     const int half = box.width / 2;
     for (int i = 0; i < 4; ++i)
-      canvas.fill({box.x + i % 2 * half, box.y + i / 2 * half, i % 2 ? box.width - half : half, i / 2 ? box.height - half : half},
+      canvas.fill({box.x + i % 2 * half, box.y + i / 2 * half, i % 2 ? box.width - half : half,
+                   i / 2 ? box.height - half : half},
                   tiles[size_t(i / 2 + i) % 2]);
     canvas.frame(box, 1, kHairline);
   };
@@ -142,14 +151,16 @@ int draw_metre(Canvas& canvas, int x, int y, int cell, const Pixels& px) {
 
 Box receptacle_box(const PlanGrid& place, const Kitchen& kitchen, int receptacle) {
   const Kitchen::Footprint& foot = kitchen.receptacles[size_t(receptacle)];
-  return {place.x + foot.column * place.cell, place.y + foot.row * place.cell, foot.columns * place.cell, foot.rows * place.cell};
+  return {place.x + foot.column * place.cell, place.y + foot.row * place.cell, foot.columns * place.cell,
+          foot.rows * place.cell};
 }
 
 void draw_kitchen(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, int doors, Lettering lettering) {
   const std::array<Rgb, 2> tiles = paper_floor(kitchen.hash);
   for (int row = 0; row < kitchen.rows; ++row)
     for (int column = 0; column < kitchen.columns; ++column)
-      canvas.fill(place.box(plan_cell(kitchen, row, column)), kitchen_cell_colour(kitchen.at(row, column), tiles[size_t(row + column) % 2]));
+      canvas.fill(place.box(plan_cell(kitchen, row, column)),
+                  kitchen_cell_colour(kitchen.at(row, column), tiles[size_t(row + column) % 2]));
   draw_edges(canvas, place, kitchen);
   for (int i = 0; i < kKitchenReceptacles; ++i) {
     const Box box = receptacle_box(place, kitchen, i);
@@ -158,7 +169,8 @@ void draw_kitchen(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen,
       draw_front(canvas, box, kitchen.receptacles[size_t(i)].back, open, place.cell, receptacle_colour(i));
     else
       draw_sink_basin(canvas, box, place.cell);
-    const Box free = i < kKitchenDoors && !open ? behind_door(box, kitchen.receptacles[size_t(i)].back, place.cell) : box;
+    const Box free =
+        i < kKitchenDoors && !open ? behind_door(box, kitchen.receptacles[size_t(i)].back, place.cell) : box;
     draw_lettering(canvas, free, i, place.cell, lettering, open ? paper_colour(kInsideColour) : receptacle_colour(i));
   }
 }
@@ -170,8 +182,8 @@ void draw_object(Canvas& canvas, const Box& box, int object) {
   canvas.disc(centre, radius - std::max(1.0, box.width * 0.06), object_colour(object));
   const int size = box.width * 5 / 8;
   if (size >= 6)
-    canvas.text(box.x + box.width / 2, box.y + box.height / 2, std::string(1, kKitchenObjectNames[object][0]), size, ink_on(object_colour(object)),
-                Across::kCentre, Upright::kMiddle);
+    canvas.text(box.x + box.width / 2, box.y + box.height / 2, std::string(1, kKitchenObjectNames[object][0]), size,
+                ink_on(object_colour(object)), Across::kCentre, Upright::kMiddle);
 }
 
 void draw_looker(Canvas& canvas, const Box& box, int heading) {
@@ -179,7 +191,8 @@ void draw_looker(Canvas& canvas, const Box& box, int heading) {
   const double radius = box.width * 0.48;
   const Point ahead = {double(kColumnStep[heading / 90]), double(kRowStep[heading / 90])};
   const auto at = [&](double forward, double right) {
-    return Point{centre.x + (ahead.x * forward - ahead.y * right) * radius, centre.y + (ahead.y * forward + ahead.x * right) * radius};
+    return Point{centre.x + (ahead.x * forward - ahead.y * right) * radius,
+                 centre.y + (ahead.y * forward + ahead.x * right) * radius};
   };
   canvas.disc(centre, radius, kPaper);
   canvas.disc(centre, radius * 0.88, kPaperAgent);
@@ -217,9 +230,11 @@ Canvas draw_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style
   const int count = int(kitchens.size());
   const auto lines_of = [count](int length) { return (count + length - 1) / length; };
   // By itself as few a row as the number of rows allows, so that the last one is not short.
-  const int wished = style.columns > 0 ? int(style.columns) : lines_of(lines_of(std::max(1, int(std::lround(std::sqrt(count * 1.6))))));
+  const int wished = style.columns > 0 ? int(style.columns)
+                                       : lines_of(lines_of(std::max(1, int(std::lround(std::sqrt(count * 1.6))))));
   const int columns = std::clamp(wished, 1, count), rows = lines_of(columns);
-  const int cell = px(count == 1 ? kAloneCellPt : kCellPt), margin = px(12), between_them = px(16), text = px(9), small = px(8);
+  const int cell = px(count == 1 ? kAloneCellPt : kCellPt), margin = px(12), between_them = px(16), text = px(9),
+            small = px(8);
   const int below = px(6) + text + px(4) + small + px(10);
 
   std::vector<int> widths(size_t(columns), 0), heights(size_t(rows), 0);
@@ -248,9 +263,11 @@ Canvas draw_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style
     for (int column = 0; column < columns && row * columns + column < count; ++column) {
       const Kitchen& kitchen = kitchens[size_t(row * columns + column)];
       const int width = widths[size_t(column)];
-      const PlanGrid place = {x + (width - kitchen.columns * cell) / 2, bottom - kitchen.rows * cell, cell, kitchen.columns};
+      const PlanGrid place = {x + (width - kitchen.columns * cell) / 2, bottom - kitchen.rows * cell, cell,
+                              kitchen.columns};
       draw_kitchen(canvas, place, kitchen, 0, Lettering::kLetters);
-      canvas.text(x + width / 2, bottom + px(6), font.fitted(kitchen.name, text, width + between_them - px(4)), text, kInk, Across::kCentre);
+      canvas.text(x + width / 2, bottom + px(6), font.fitted(kitchen.name, text, width + between_them - px(4)), text,
+                  kInk, Across::kCentre);
       canvas.text(x + width / 2, bottom + px(6) + text + px(4), label(kitchen), small, kSoftInk, Across::kCentre);
       x += width + between_them;
     }

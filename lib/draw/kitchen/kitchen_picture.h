@@ -1,13 +1,13 @@
-// Kitchens on paper, from above: one, or many with their names, and the signs for agent and objects on them. Floor has the kitchen's own colour made
-// lighter; objects and receptacles have those that the agent sees.
+// Kitchens on paper, from above: one, or many with their names, and the signs for agent and objects on them. Floor has
+// the kitchen's own colour made lighter; objects and receptacles have those that the agent sees.
 #pragma once
 #include <vector>
 
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/key.h"
+#include "draw/episode/plan_grid.h"
 #include "draw/map_style.h"
 #include "draw/paper.h"
-#include "draw/episode/plan_grid.h"
 #include "world/kitchen/geometry/kitchen.h"
 
 namespace synpo {

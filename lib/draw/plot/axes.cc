@@ -44,8 +44,9 @@ Axes::Room Axes::room(int width, int height) const {
     right = std::max(right, label - int((1 - x_.place(at)) * width));
   }
   // Letters reach below the digits' line by up to a third of their size.
-  return {title + pixels(kSpacePt) + y_label_width(height) + beside, right, pixels(kLabelPt) / 2,
-          beside + font_.digit_height(pixels(kLabelPt)) + pixels(kTitleSpacePt) + font_.digit_height(title) + title / 3};
+  return {
+      title + pixels(kSpacePt) + y_label_width(height) + beside, right, pixels(kLabelPt) / 2,
+      beside + font_.digit_height(pixels(kLabelPt)) + pixels(kTitleSpacePt) + font_.digit_height(title) + title / 3};
 }
 
 Point Axes::place(const Box& box, double x, double y) const {
@@ -53,7 +54,8 @@ Point Axes::place(const Box& box, double x, double y) const {
 }
 
 void Axes::draw(Canvas& canvas, const Box& box) const {
-  const int size = pixels(kLabelPt), title = pixels(kTitlePt), tick = pixels(kTickPt), space = pixels(kSpacePt), line = pixels(kLinePt);
+  const int size = pixels(kLabelPt), title = pixels(kTitlePt), tick = pixels(kTickPt), space = pixels(kSpacePt),
+            line = pixels(kLinePt);
   const int grid = pixels(kGridPt);
   const Ticks across = x_ticks(box.width), up = y_ticks(box.height);
   for (const double at : up.at) {
@@ -71,8 +73,8 @@ void Axes::draw(Canvas& canvas, const Box& box) const {
   const auto fitted = [&](const std::string& text, int length) { return font_.fitted(text, title, length); };
   const int below = box.bottom() + tick + space + font_.digit_height(size) + pixels(kTitleSpacePt);
   canvas.text(box.x + box.width / 2, below, fitted(x_.title, box.width), title, kInk, Across::kCentre);
-  canvas.text_up(box.x - tick - space - y_label_width(box.height) - pixels(kSpacePt) - title * 2 / 3, box.y + box.height / 2,
-                 fitted(y_.title, box.height + title * 2), title, kInk, Across::kCentre);
+  canvas.text_up(box.x - tick - space - y_label_width(box.height) - pixels(kSpacePt) - title * 2 / 3,
+                 box.y + box.height / 2, fitted(y_.title, box.height + title * 2), title, kInk, Across::kCentre);
 }
 
 void Axes::frame(Canvas& canvas, const Box& box) const {

@@ -12,10 +12,11 @@ namespace {
 
 constexpr double kMarkLinePt = 0.8;
 // Okabe and Ito's palette (2008), which colour-blind readers tell apart, without its yellow, the darker ones first.
-constexpr Rgb kColours[kMostMethods] = {{0, 114, 178}, {213, 94, 0},    {0, 158, 115}, {204, 121, 167},
+constexpr Rgb kColours[kMostMethods] = {{0, 114, 178}, {213, 94, 0},   {0, 158, 115}, {204, 121, 167},
                                         {40, 40, 40},  {86, 180, 233}, {230, 159, 0}};
 
-std::vector<Point> places(const Axes& axes, const Box& plot, const std::vector<double>& x, const std::vector<double>& y) {
+std::vector<Point> places(const Axes& axes, const Box& plot, const std::vector<double>& x,
+                          const std::vector<double>& y) {
   std::vector<Point> out;
   for (size_t i = 0; i < x.size(); ++i) out.push_back(axes.place(plot, x[i], y[i]));
   return out;
@@ -26,7 +27,8 @@ void draw_marks(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
                 const CurvesStyle& style) {
   std::vector<std::pair<double, const CurveMark*>> marks;
   for (const CurveMark& mark : style.marks) {
-    const bool here = std::any_of(panel.parts.begin(), panel.parts.end(), [&](int part) { return set.parts[part] == mark.part; });
+    const bool here =
+        std::any_of(panel.parts.begin(), panel.parts.end(), [&](int part) { return set.parts[part] == mark.part; });
     if (mark.part.empty() || here) marks.push_back({layout.axes.place(panel.plot, 0, mark.value).y, &mark});
   }
   std::stable_sort(marks.begin(), marks.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -47,14 +49,16 @@ void draw_marks(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
     if (marks[i].second->label.empty()) continue;
     const Box beside = {plot.right(), 0, space, canvas.height()};
     canvas.paint(stroke_mask({{right, y}, {right + space * 2 / 3, text[i]}}, 0.5 * style.scale, {}, beside), kSoftInk);
-    const std::string label = canvas.font().fitted(marks[i].second->label, size, panel.area.right() - plot.right() - space);
-    canvas.text(plot.right() + space, int(std::lround(text[i])), label, size, kSoftInk, Across::kLeft, Upright::kMiddle);
+    const std::string label =
+        canvas.font().fitted(marks[i].second->label, size, panel.area.right() - plot.right() - space);
+    canvas.text(plot.right() + space, int(std::lround(text[i])), label, size, kSoftInk, Across::kLeft,
+                Upright::kMiddle);
   }
 }
 
 // The first method is drawn last, on top.
-void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout, const CurvesLayout::Panel& panel, double scale,
-                bool bands) {
+void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout, const CurvesLayout::Panel& panel,
+                double scale, bool bands) {
   // A line along an edge is drawn in its full width.
   const int reach = int(std::ceil(kCurvePt * scale / 2));
   const Box plot = panel.plot;
@@ -65,10 +69,12 @@ void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
       if (!curve) continue;
       const CurveLook look = curve_look(set, layout.one_panel, method, part);
       if (!bands)
-        canvas.paint(stroke_mask(places(layout.axes, plot, curve->x, curve->mean), kCurvePt * scale, curve_dash(look, scale), clip),
+        canvas.paint(stroke_mask(places(layout.axes, plot, curve->x, curve->mean), kCurvePt * scale,
+                                 curve_dash(look, scale), clip),
                      look.colour);
       else if (!curve->low.empty())
-        canvas.paint(band_mask(places(layout.axes, plot, curve->x, curve->high), places(layout.axes, plot, curve->x, curve->low), plot),
+        canvas.paint(band_mask(places(layout.axes, plot, curve->x, curve->high),
+                               places(layout.axes, plot, curve->x, curve->low), plot),
                      look.colour, kBandOpacity);
     }
 }
@@ -103,15 +109,14 @@ CurveLook curve_look(const CurveSet& set, bool one_panel, size_t method, size_t 
   return {kColours[set.methods.size() == 1 && styles ? part : method], styles && part == 0};
 }
 
-Dash curve_dash(const CurveLook& look, double scale) {
-  return look.dashed ? Dash{2.6 * scale, 3.2 * scale} : Dash{};
-}
+Dash curve_dash(const CurveLook& look, double scale) { return look.dashed ? Dash{2.6 * scale, 3.2 * scale} : Dash{}; }
 
 Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font) {
   const CurvesLayout layout = lay_out_curves(set, style, font);
   Canvas canvas(layout.width, layout.height, font);
   layout.heading.draw(canvas, layout.margin, layout.margin);
-  const CurvesLegend legend = lay_out_curves_legend(set, layout.one_panel, style.scale, layout.width - 2 * layout.margin, font);
+  const CurvesLegend legend =
+      lay_out_curves_legend(set, layout.one_panel, style.scale, layout.width - 2 * layout.margin, font);
   draw_curves_legend(canvas, legend, layout.margin, layout.legend_y, style.scale);
   for (const CurvesLayout::Panel& panel : layout.panels) {
     const Box& plot = panel.plot;

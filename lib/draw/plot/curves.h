@@ -1,15 +1,15 @@
-// Learning curves (Figures 2, 3 and 7): methods against updates, states or minutes, seen and unseen pairs in panels of their own or as
-// two styles of line, each method a mean with a band over its runs.
+// Learning curves (Figures 2, 3 and 7): methods against updates, states or minutes, seen and unseen pairs in panels of
+// their own or as two styles of line, each method a mean with a band over its runs.
 #pragma once
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "draw/plot/axes.h"
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/stroke.h"
+#include "draw/plot/axes.h"
 #include "stats/curve.h"
 
 namespace synpo {
@@ -30,8 +30,8 @@ struct MethodRuns {
   std::string label;
   std::vector<std::vector<Curve>> runs;
 };
-// Means over the runs. Parts that no method has values for are dropped. Throws kData where nothing is left, or runs of a method have no
-// x in common.
+// Means over the runs. Parts that no method has values for are dropped. Throws kData where nothing is left, or runs of
+// a method have no x in common.
 CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band);
 
 // A line across at a value, with a label beside the plot.
@@ -52,12 +52,13 @@ struct CurvesStyle {
   Band band = Band::kSd;
   AxisRange x, y;
   std::vector<CurveMark> marks;
-  int64_t panels = 0;                // 1 or 2 for two parts; 0: 2 where there are several methods
+  int64_t panels = 0;                  // 1 or 2 for two parts; 0: 2 where there are several methods
   double width_pt = 0, height_pt = 0;  // of the picture; 0: by the number of panels
-  double scale = 2;                  // pixels per point
+  double scale = 2;                    // pixels per point
 };
 
-// "LOW:HIGH", either may be missing; "VALUE", "VALUE=LABEL" or "seen:VALUE=LABEL"; "WIDTHxHEIGHT" in points. Throw std::invalid_argument.
+// "LOW:HIGH", either may be missing; "VALUE", "VALUE=LABEL" or "seen:VALUE=LABEL"; "WIDTHxHEIGHT" in points. Throw
+// std::invalid_argument.
 AxisRange parse_axis_range(const std::string& text);
 CurveMark parse_curve_mark(const std::string& text);
 void parse_curves_size(const std::string& text, CurvesStyle& style);
@@ -79,7 +80,8 @@ struct CurvesLayout {
   Axes axes;  // the same for every panel
 };
 
-// Throws kUsage where the size leaves no room for the axes, for more than kMostMethods, and for a mark outside the range given.
+// Throws kUsage where the size leaves no room for the axes, for more than kMostMethods, and for a mark outside the
+// range given.
 CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
 Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
 

@@ -8,7 +8,8 @@
 namespace synpo {
 namespace {
 
-constexpr double kMarginPt = 10, kBetweenPt = 14, kSmallestPlotPt = 40, kOnePanelPt = 380, kTwoPanelsPt = 620, kHeightPt = 270;
+constexpr double kMarginPt = 10, kBetweenPt = 14, kSmallestPlotPt = 40, kOnePanelPt = 380, kTwoPanelsPt = 620,
+                 kHeightPt = 270;
 
 // What the lines and bands span, of points that x shows.
 struct Span {
@@ -26,7 +27,8 @@ void for_curves(const CurveSet& set, Visit visit) {
       if (curve) visit(*curve);
 }
 
-// A run of whole updates ends a little before the round number of states that was meant: the axis has that number, where it is less than 1 % away.
+// A run of whole updates ends a little before the round number of states that was meant: the axis has that number,
+// where it is less than 1 % away.
 double round_end(double high) {
   const double unit = std::pow(10, std::floor(std::log10(high)) - 1), up = std::ceil(high / unit) * unit;
   return up < 1.01 * high ? up : high;
@@ -58,7 +60,8 @@ Axis y_axis(const CurveSet& set, const CurvesStyle& style, const Axis& x, int mo
   for (const CurveMark& mark : style.marks) span.add(mark.value);
   if (span.low > span.high) span = {0, 1};  // no point is in sight
   const bool given = !std::isnan(style.y.low) && !std::isnan(style.y.high);
-  Axis axis = style.percent || given ? Axis{0, 100, 1, style.y_title} : value_axis(style.y_title, span.low, span.high, most_ticks);
+  Axis axis = style.percent || given ? Axis{0, 100, 1, style.y_title}
+                                     : value_axis(style.y_title, span.low, span.high, most_ticks);
   if (!std::isnan(style.y.low)) axis.low = style.y.low;
   if (!std::isnan(style.y.high)) axis.high = style.y.high;
   if (axis.high <= axis.low) fail(Exit::kUsage, "--y-range leaves nothing between ", axis.low, " and ", axis.high);
@@ -78,7 +81,8 @@ std::string caption_of(const CurveSet& set, Band band) {
     cut = cut || curve.longest > curve.x.back() * 1.02;
   });
   if (most < 2) return "";
-  std::string out = fewest == most ? concat("mean of ", most, " runs") : concat("mean of ", fewest, " to ", most, " runs");
+  std::string out =
+      fewest == most ? concat("mean of ", most, " runs") : concat("mean of ", fewest, " to ", most, " runs");
   if (band == Band::kSd) out += "; band: standard deviation (divisor n \u2212 1)";
   if (band == Band::kRange) out += "; band: lowest to highest run";
   return out + (cut ? "; a mean ends with its shortest run" : "");
@@ -98,8 +102,17 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   const int margin = px(kMarginPt), inside = std::max(1, width - 2 * margin);
 
   const Axis x = x_axis(set, style), y = y_axis(set, style, x, std::clamp(height / px(32), 2, 11));
-  CurvesLayout out{.width = width, .height = height, .heading = {}, .margin = margin, .legend_y = 0, .panel_title_size = px(9),
-                   .mark_size = px(8), .mark_space = px(9), .one_panel = one_panel, .panels = {}, .axes = Axes(x, y, style.scale, font)};
+  CurvesLayout out{.width = width,
+                   .height = height,
+                   .heading = {},
+                   .margin = margin,
+                   .legend_y = 0,
+                   .panel_title_size = px(9),
+                   .mark_size = px(8),
+                   .mark_space = px(9),
+                   .one_panel = one_panel,
+                   .panels = {},
+                   .axes = Axes(x, y, style.scale, font)};
   out.heading = Heading(style.title, caption_of(set, style.band), inside, style.scale, font);
   int top = margin + out.heading.height();
   out.legend_y = top;
@@ -108,7 +121,8 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   const auto marks_room = [&](const std::vector<int>& parts) {
     int widest = 0;
     for (const CurveMark& mark : style.marks)
-      if (mark.part.empty() || std::any_of(parts.begin(), parts.end(), [&](int part) { return set.parts[part] == mark.part; }))
+      if (mark.part.empty() ||
+          std::any_of(parts.begin(), parts.end(), [&](int part) { return set.parts[part] == mark.part; }))
         widest = std::max(widest, font.width(mark.label, out.mark_size));
     return widest > 0 ? std::min(widest, inside / (4 * panels)) + out.mark_space : 0;
   };
@@ -120,7 +134,8 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   int for_marks = 0;
   for (int panel = 0; panel < panels; ++panel) {
     CurvesLayout::Panel next;
-    for (int part = one_panel ? 0 : panel; part < (one_panel ? int(set.parts.size()) : panel + 1); ++part) next.parts.push_back(part);
+    for (int part = one_panel ? 0 : panel; part < (one_panel ? int(set.parts.size()) : panel + 1); ++part)
+      next.parts.push_back(part);
     for_marks += marks_room(next.parts);
     out.panels.push_back(next);
   }
@@ -131,11 +146,13 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
     const int title = next.title.empty() ? 0 : out.panel_title_size + px(1.5);
     if (share < px(kSmallestPlotPt) || height - top - margin < px(kSmallestPlotPt)) no_room();
     next.area = {left, top, share + marks_room(next.parts), height - margin - top};
-    // Ticks depend on the size of the plot and the plot's size on their labels: the second round has the labels of the first.
+    // Ticks depend on the size of the plot and the plot's size on their labels: the second round has the labels of the
+    // first.
     next.plot = next.area;
     for (int round = 0; round < 2; ++round) {
       const Axes::Room room = out.axes.room(next.plot.width, next.plot.height);
-      next.plot = {left + room.left, top + title + room.top, share - room.left - room.right, next.area.height - title - room.top - room.bottom};
+      next.plot = {left + room.left, top + title + room.top, share - room.left - room.right,
+                   next.area.height - title - room.top - room.bottom};
       if (next.plot.width < px(kSmallestPlotPt) || next.plot.height < px(kSmallestPlotPt)) no_room();
     }
     left = next.area.right() + px(kBetweenPt);

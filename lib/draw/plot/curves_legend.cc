@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "draw/colour.h"
 #include "draw/canvas/stroke.h"
+#include "draw/colour.h"
 
 namespace synpo {
 namespace {
@@ -20,21 +20,24 @@ CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double s
     legend.entries.push_back({font.fitted(name, px(kTextPt), width - px(kSamplePt + kSpacePt)), look, band, 0, 0});
   };
   const auto banded = [&](const CurveSet::Method& method) {
-    return std::any_of(method.parts.begin(), method.parts.end(), [](const auto& part) { return part && !part->low.empty(); });
+    return std::any_of(method.parts.begin(), method.parts.end(),
+                       [](const auto& part) { return part && !part->low.empty(); });
   };
   const bool styles = one_panel && set.parts.size() == 2;
   for (size_t method = 0; method < set.methods.size(); ++method) {
     const std::string& label = set.methods[method].label;
     if (set.methods.size() == 1 && styles) {
       for (size_t part = 0; part < 2; ++part)
-        add(label.empty() ? set.parts[part] + " pairs" : label + ", " + set.parts[part] + " pairs", curve_look(set, one_panel, 0, part),
+        add(label.empty() ? set.parts[part] + " pairs" : label + ", " + set.parts[part] + " pairs",
+            curve_look(set, one_panel, 0, part),
             set.methods[0].parts[part] && !set.methods[0].parts[part]->low.empty());
     } else if (!label.empty()) {
       add(label, {curve_look(set, false, method, 0).colour, false}, banded(set.methods[method]));
     }
   }
   if (set.methods.size() > 1 && styles)
-    for (size_t part = 0; part < 2; ++part) add(set.parts[part] + " pairs", {kSoftInk, curve_look(set, true, 0, part).dashed}, false);
+    for (size_t part = 0; part < 2; ++part)
+      add(set.parts[part] + " pairs", {kSoftInk, curve_look(set, true, 0, part).dashed}, false);
 
   int x = 0, y = 0;
   for (CurvesLegend::Entry& entry : legend.entries) {
@@ -60,8 +63,8 @@ void draw_curves_legend(Canvas& canvas, const CurvesLegend& legend, int x, int y
     if (entry.band) canvas.paint(whole, entry.look.colour, kBandOpacity);
     const std::vector<Point> line = {{sample.x + scale, middle}, {sample.right() - scale, middle}};
     canvas.paint(stroke_mask(line, kCurvePt * scale, curve_dash(entry.look, scale), sample), entry.look.colour);
-    canvas.text(sample.right() + px(kSpacePt), sample.y + sample.height / 2, entry.name, px(kTextPt), kInk, Across::kLeft,
-                Upright::kMiddle);
+    canvas.text(sample.right() + px(kSpacePt), sample.y + sample.height / 2, entry.name, px(kTextPt), kInk,
+                Across::kLeft, Upright::kMiddle);
   }
 }
 

@@ -15,7 +15,8 @@ double number(const std::string& text, const char* expected) {
     value = std::stod(text, &end);
   } catch (const std::exception&) {
   }
-  if (!(std::abs(value) <= 1e15) || end != text.size() || std::isspace(uint8_t(text[0]))) throw std::invalid_argument(expected);
+  if (!(std::abs(value) <= 1e15) || end != text.size() || std::isspace(uint8_t(text[0])))
+    throw std::invalid_argument(expected);
   return value;
 }
 

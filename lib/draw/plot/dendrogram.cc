@@ -8,7 +8,8 @@
 namespace synpo {
 namespace {
 
-// Calls stem(along, from, to) for each line away from the leaves, and bar(from, to, height) for each line across, in pixels.
+// Calls stem(along, from, to) for each line away from the leaves, and bar(from, to, height) for each line across, in
+// pixels.
 template <class Stem, class Bar>
 void for_branches(const Dendrogram& tree, int pitch, int depth, Stem stem, Bar bar) {
   struct Node {
@@ -30,15 +31,25 @@ void for_branches(const Dendrogram& tree, int pitch, int depth, Stem stem, Bar b
 }  // namespace
 
 void draw_tree_right(Canvas& canvas, const Dendrogram& tree, int x, int y, int pitch, int depth, int line) {
-  for_branches(tree, pitch, depth - line,
-      [&](int along, int from, int to) { canvas.fill({x + from, y + along, to - from, line}, kSoftInk); },
-      [&](int from, int to, int height) { canvas.fill({x + height, y + from, line, to - from + line}, kSoftInk); });
+  for_branches(
+      tree, pitch, depth - line,
+      [&](int along, int from, int to) {
+        canvas.fill({x + from, y + along, to - from, line}, kSoftInk);
+      },
+      [&](int from, int to, int height) {
+        canvas.fill({x + height, y + from, line, to - from + line}, kSoftInk);
+      });
 }
 
 void draw_tree_up(Canvas& canvas, const Dendrogram& tree, int x, int y, int pitch, int depth, int line) {
-  for_branches(tree, pitch, depth - line,
-      [&](int along, int from, int to) { canvas.fill({x + along, y - to, line, to - from}, kSoftInk); },
-      [&](int from, int to, int height) { canvas.fill({x + from, y - height - line, to - from + line, line}, kSoftInk); });
+  for_branches(
+      tree, pitch, depth - line,
+      [&](int along, int from, int to) {
+        canvas.fill({x + along, y - to, line, to - from}, kSoftInk);
+      },
+      [&](int from, int to, int height) {
+        canvas.fill({x + from, y - height - line, to - from + line, line}, kSoftInk);
+      });
 }
 
 }  // namespace synpo

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "base/error.h"
-#include "draw/plot/axes.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
+#include "draw/colour.h"
+#include "draw/plot/axes.h"
 #include "draw/plot/labels.h"
 #include "stats/pca.h"
 #include "stats/report/text_table.h"
@@ -51,12 +51,14 @@ Axes score_axes(const Pca& pca, double scale, const Font& font) {
   if (span <= 0) span = 1;  // all points are one
   const auto axis = [&](int k) {
     const double middle = (low[k] + high[k]) / 2, half = 0.58 * span;
-    return Axis{middle - half, middle + half, 1, concat("component ", k + 1, " (", percent(pca.explained[k]), " % of the variance)")};
+    return Axis{middle - half, middle + half, 1,
+                concat("component ", k + 1, " (", percent(pca.explained[k]), " % of the variance)")};
   };
   return Axes(axis(0), axis(1), scale, font);
 }
 
-void draw_scores(Canvas& canvas, const Box& plot, const Embeddings& panel, const Pca& pca, const Axes& axes, const Pixels& px) {
+void draw_scores(Canvas& canvas, const Box& plot, const Embeddings& panel, const Pca& pca, const Axes& axes,
+                 const Pixels& px) {
   axes.draw(canvas, plot);
   axes.frame(canvas, plot);
   const int side = px(panel.marks.empty() ? 7 : 9), size = px(kNamePt);
@@ -69,7 +71,8 @@ void draw_scores(Canvas& canvas, const Box& plot, const Embeddings& panel, const
   const std::vector<Box> labels = place_labels(points, size, plot, canvas.font());
   for (size_t i = 0; i < points.size(); ++i) draw_marker(canvas, points[i].marker, panel, i);
   for (size_t i = 0; i < points.size(); ++i)
-    canvas.text(labels[i].x + labels[i].width / 2, labels[i].y + labels[i].height / 2, points[i].name, size, kInk, Across::kCentre, Upright::kMiddle);
+    canvas.text(labels[i].x + labels[i].width / 2, labels[i].y + labels[i].height / 2, points[i].name, size, kInk,
+                Across::kCentre, Upright::kMiddle);
 }
 
 // Sizes of one matrix of distances, in pixels.
@@ -98,9 +101,11 @@ MatrixPlan plan_matrix(const Embeddings& panel, Distance kind, const Pixels& px,
     }
   plan.bar = high > 0 ? value_axis("", low, high, kMostTicks) : Axis{0, 1, 1, ""};
   const Ticks ticks = plan.bar.ticks(kMostTicks);
-  for (const double at : ticks.at) plan.bar_labels = std::max(plan.bar_labels, font.width(plan.bar.label(at, ticks), px(kBarTextPt)));
+  for (const double at : ticks.at)
+    plan.bar_labels = std::max(plan.bar_labels, font.width(plan.bar.label(at, ticks), px(kBarTextPt)));
   plan.value_size = px(kNamePt);
-  while (plan.value_size >= px(kSmallestPt) && font.width("0.88", plan.value_size) > plan.cell - px(2)) --plan.value_size;
+  while (plan.value_size >= px(kSmallestPt) && font.width("0.88", plan.value_size) > plan.cell - px(2))
+    --plan.value_size;
   if (plan.value_size < px(kSmallestPt)) plan.value_size = 0;
   return plan;
 }
@@ -109,7 +114,8 @@ MatrixPlan plan_matrix(const Embeddings& panel, Distance kind, const Pixels& px,
 Rgb distance_colour(double share) { return ramp_colour(find_scheme("safe").seen, 1 - share); }
 
 void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const MatrixPlan& plan, const Pixels& px) {
-  const int count = int(panel.names.size()), side = plan.side(panel), cell = plan.cell, gap = cell >= px(8) ? px(0.75) : 0;
+  const int count = int(panel.names.size()), side = plan.side(panel), cell = plan.cell,
+            gap = cell >= px(8) ? px(0.75) : 0;
   const int left = x + plan.before(), below = y + side + px(3), marker = plan.marker - px(3);
   for (int i = 0; i < count; ++i) {
     const std::string name = canvas.font().fitted(panel.names[i], plan.name_size, plan.names - px(4));
@@ -128,8 +134,8 @@ void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const
       const Rgb ground = distance_colour(plan.bar.place(value));
       canvas.fill(box, ground);
       if (plan.value_size > 0)
-        canvas.text(box.x + box.width / 2, box.y + box.height / 2, decimal(value, value < 9.995 ? 2 : 1), plan.value_size, ink_on(ground),
-                    Across::kCentre, Upright::kMiddle);
+        canvas.text(box.x + box.width / 2, box.y + box.height / 2, decimal(value, value < 9.995 ? 2 : 1),
+                    plan.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
     }
   const Box bar = {left + side + px(10), y, px(kBarPt), side};
   for (int row = 0; row < bar.height; ++row)
@@ -138,7 +144,8 @@ void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const
   for (const double at : ticks.at) {
     const int tick = bar.bottom() - int(std::lround(plan.bar.place(at) * bar.height));
     canvas.fill({bar.right(), tick, px(3), px(0.6)}, kSoftInk);
-    canvas.text(bar.right() + px(5), tick, plan.bar.label(at, ticks), px(kBarTextPt), kInk, Across::kLeft, Upright::kMiddle);
+    canvas.text(bar.right() + px(5), tick, plan.bar.label(at, ticks), px(kBarTextPt), kInk, Across::kLeft,
+                Upright::kMiddle);
   }
 }
 
@@ -173,7 +180,8 @@ Canvas draw_embedding_map(const std::vector<Embeddings>& panels, const Embedding
   return canvas;
 }
 
-Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance kind, const EmbeddingStyle& style, const Font& font) {
+Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance kind, const EmbeddingStyle& style,
+                                const Font& font) {
   check(panels);
   const Pixels px{style.scale};
   const int margin = px(kMarginPt), title = px(kPanelTitlePt);
@@ -193,7 +201,8 @@ Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance 
   heading.draw(canvas, margin, margin);
   int x = margin;
   for (size_t i = 0; i < panels.size(); ++i) {
-    canvas.text(x + plans[i].before() + plans[i].side(panels[i]) / 2, titles_y, panels[i].title, title, kInk, Across::kCentre);
+    canvas.text(x + plans[i].before() + plans[i].side(panels[i]) / 2, titles_y, panels[i].title, title, kInk,
+                Across::kCentre);
     draw_distances(canvas, x, y, panels[i], plans[i], px);
     x += widths[i] + px(kBetweenPt);
   }

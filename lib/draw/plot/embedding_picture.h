@@ -13,7 +13,7 @@ namespace synpo {
 struct Embeddings {
   std::string title;
   std::vector<std::string> names;
-  std::vector<Sign> marks;     // stand beside the names and in the map; empty: dots
+  std::vector<Sign> marks;  // stand beside the names and in the map; empty: dots
   int size;
   std::vector<double> values;  // [names, size]
 };
@@ -23,10 +23,12 @@ struct EmbeddingStyle {
   double scale = 2;  // pixels per point
 };
 
-// Each panel has principal components of its own, with one unit on both axes, and the share of the variance that they explain.
+// Each panel has principal components of its own, with one unit on both axes, and the share of the variance that they
+// explain.
 Canvas draw_embedding_map(const std::vector<Embeddings>& panels, const EmbeddingStyle& style, const Font& font);
 
 // A cell for every two names; each panel has a colour bar of its own, from the nearest two to the farthest.
-Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance kind, const EmbeddingStyle& style, const Font& font);
+Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance kind, const EmbeddingStyle& style,
+                                const Font& font);
 
 }  // namespace synpo

@@ -53,32 +53,37 @@ void draw_cell(Canvas& canvas, const Box& box, const HeatCell& cell, const Ramp&
     draw_empty_cell(canvas, box, layout.pixels(0.5));
   const int inset = layout.pixels(2), part_size = layout.pixels(kPartNamePt);
   if (!part.empty())
-    canvas.text(box.x + inset, box.y + inset, canvas.font().fitted(part, part_size, box.width - 2 * inset), part_size, ink_on(ground));
+    canvas.text(box.x + inset, box.y + inset, canvas.font().fitted(part, part_size, box.width - 2 * inset), part_size,
+                ink_on(ground));
   if (cell.evaluated() && layout.value_size > 0)
     canvas.text(box.x + box.width / 2, box.y + box.height / 2 + (part.empty() ? 0 : layout.pixels(3)),
-                rate_text(cell.successes, cell.episodes), layout.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
+                rate_text(cell.successes, cell.episodes), layout.value_size, ink_on(ground), Across::kCentre,
+                Upright::kMiddle);
 }
 
-void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const HeatmapLayout& layout, const Scheme& scheme) {
+void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const HeatmapLayout& layout,
+                const Scheme& scheme) {
   const int envs = int(table.envs.size()), side = layout.cell - layout.gap;
   std::vector<bool> named(table.cells.size());
   if (!table.parts.empty() && layout.cell >= 3 * layout.pixels(kPartNamePt)) named = cells_that_name_parts(table);
   for (int i = 0; i < int(table.cells.size()); ++i) {
     const HeatCell& cell = table.cells[i];
     const Box box = {matrix.x + i % envs * layout.cell, matrix.y + i / envs * layout.cell, side, side};
-    draw_cell(canvas, box, cell, group_ramp(table, cell.group, scheme), layout, named[i] ? table.parts[cell.part].name : "");
+    draw_cell(canvas, box, cell, group_ramp(table, cell.group, scheme), layout,
+              named[i] ? table.parts[cell.part].name : "");
   }
 }
 
 // To the right of the matrix the means of its tasks, below it those of its environments.
-void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::Panel& panel, const HeatmapLayout& layout,
-                  const Scheme& scheme) {
+void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::Panel& panel,
+                  const HeatmapLayout& layout, const Scheme& scheme) {
   const Box& matrix = panel.matrix;
   const int across = layout.margin_cell - layout.gap, side = layout.cell - layout.gap, space = layout.pixels(5);
   for (size_t i = 0; i < panel.margins.size(); ++i) {
     const HeatMargin& margin = panel.margins[i];
     const Ramp& ramp = group_ramp(table, margin.group, scheme);
-    const int offset = layout.margin_space + int(i) * layout.margin_cell, x = matrix.right() + offset, y = matrix.bottom() + offset;
+    const int offset = layout.margin_space + int(i) * layout.margin_cell, x = matrix.right() + offset,
+              y = matrix.bottom() + offset;
     const auto draw = [&](const Box& box, const HeatCell& cell) {
       if (cell.evaluated()) draw_cell(canvas, box, cell, ramp, layout);
     };
@@ -91,7 +96,8 @@ void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::P
     else
       canvas.text(x + across / 2, layout.margin_labels_y, margin.name, layout.label_size, kInk, Across::kCentre);
     if (&panel == &layout.panels[0])
-      canvas.text(matrix.x - space, y + across / 2, margin.name, layout.label_size, kInk, Across::kRight, Upright::kMiddle);
+      canvas.text(matrix.x - space, y + across / 2, margin.name, layout.label_size, kInk, Across::kRight,
+                  Upright::kMiddle);
   }
 }
 
@@ -99,8 +105,8 @@ void draw_task_labels(Canvas& canvas, const HeatmapLayout& layout) {
   const Box& matrix = layout.panels[0].matrix;
   const int middle = (layout.cell - layout.gap) / 2;
   for (size_t i = 0; i < layout.task_labels.size(); ++i)
-    canvas.text(matrix.x - layout.pixels(5), matrix.y + int(i) * layout.cell + middle, layout.task_labels[i], layout.label_size, kInk,
-                Across::kRight, Upright::kMiddle);
+    canvas.text(matrix.x - layout.pixels(5), matrix.y + int(i) * layout.cell + middle, layout.task_labels[i],
+                layout.label_size, kInk, Across::kRight, Upright::kMiddle);
   const int size = layout.pixels(kAxisPt);
   canvas.text_up(layout.margin + size / 2, matrix.y + matrix.height / 2, kTaskAxis, size, kSoftInk, Across::kCentre);
 }
@@ -114,7 +120,8 @@ void draw_env_labels(Canvas& canvas, const Box& matrix, const HeatmapLayout& lay
     else
       canvas.text(x, layout.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kCentre);
   }
-  canvas.text(matrix.x + matrix.width / 2, layout.env_axis_y, kEnvAxis, layout.pixels(kAxisPt), kSoftInk, Across::kCentre);
+  canvas.text(matrix.x + matrix.width / 2, layout.env_axis_y, kEnvAxis, layout.pixels(kAxisPt), kSoftInk,
+              Across::kCentre);
 }
 
 // Beside the last panel the tree of the tasks, above each panel that of the environments.
@@ -122,12 +129,12 @@ void draw_trees(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& l
   const int line = layout.pixels(0.6), middle = (layout.cell - layout.gap - line) / 2;
   const HeatmapLayout::Panel& last = layout.panels.back();
   if (figure.task_tree)
-    draw_tree_right(canvas, *figure.task_tree, layout.right_of(last) + layout.tree_space, last.matrix.y + middle, layout.cell,
-                    layout.tree_depth, line);
+    draw_tree_right(canvas, *figure.task_tree, layout.right_of(last) + layout.tree_space, last.matrix.y + middle,
+                    layout.cell, layout.tree_depth, line);
   if (figure.env_tree)
     for (const HeatmapLayout::Panel& panel : layout.panels)
-      draw_tree_up(canvas, *figure.env_tree, panel.matrix.x + middle, panel.matrix.y - layout.tree_space, layout.cell, layout.tree_depth,
-                   line);
+      draw_tree_up(canvas, *figure.env_tree, panel.matrix.x + middle, panel.matrix.y - layout.tree_space, layout.cell,
+                   layout.tree_depth, line);
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
-// Success matrices as pictures: tasks down, environments across, one colour ramp for each kind of pair (Figures 4 to 6 and 8).
-// lay_out_heatmap() decides sizes and labels, draw_heatmap() draws.
+// Success matrices as pictures: tasks down, environments across, one colour ramp for each kind of pair (Figures 4 to 6
+// and 8). lay_out_heatmap() decides sizes and labels, draw_heatmap() draws.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "draw/canvas/canvas.h"
-#include "draw/colour.h"
 #include "draw/canvas/heading.h"
+#include "draw/colour.h"
 #include "stats/matrix/heat_table.h"
 
 namespace synpo {
@@ -27,24 +27,25 @@ constexpr double kAxisPt = 9;  // their height
 struct HeatmapLayout {
   struct Panel {
     int heading_y;
-    Heading heading;                    // where there are several panels
+    Heading heading;  // where there are several panels
     Box matrix;
     std::vector<HeatMargin> margins;
   };
   double scale;
   int width, height, margin;
   Heading heading;
-  int cell, gap;                        // distance from cell to cell, and the white line in it
-  int label_size, value_size;           // value_size 0: no values
+  int cell, gap;                         // distance from cell to cell, and the white line in it
+  int label_size, value_size;            // value_size 0: no values
   bool env_labels_up, margin_labels_up;  // read upwards
-  std::vector<std::string> env_labels, task_labels;  // cut where they are too long, empty where there is no room for each
+  std::vector<std::string> env_labels,
+      task_labels;  // cut where they are too long, empty where there is no room for each
   std::vector<Panel> panels;
-  int margin_space, margin_cell;        // from the matrix to its margins, and across each
-  int tree_space, tree_depth;           // from the cells to a tree, and from its leaves to its root
+  int margin_space, margin_cell;                  // from the matrix to its margins, and across each
+  int tree_space, tree_depth;                     // from the cells to a tree, and from its leaves to its root
   int env_labels_y, margin_labels_y, env_axis_y;  // tops of the labels and of the axis' name
   Box legend;
   int bar_height;
-  int pixels(double pt) const;          // at least 1
+  int pixels(double pt) const;  // at least 1
   // Ends of what belongs to a panel's rows and columns: the matrix and its margins.
   int right_of(const Panel& panel) const;
   int bottom_of(const Panel& panel) const;

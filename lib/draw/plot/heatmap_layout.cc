@@ -23,7 +23,8 @@ double automatic_cell_pt(size_t longer_side) {
 }
 
 // Every label that has room at `size`, the first always; cut to `longest`.
-std::vector<std::string> labels(const std::vector<std::string>& names, int cell, int size, int longest, const Font& font) {
+std::vector<std::string> labels(const std::vector<std::string>& names, int cell, int size, int longest,
+                                const Font& font) {
   const size_t step = size_t(std::max(1.0, std::ceil(1.15 * size / cell)));
   std::vector<std::string> out(names.size());
   for (size_t i = 0; i < names.size(); i += step) out[i] = font.fitted(names[i], size, longest);
@@ -59,7 +60,8 @@ std::string caption_of(const HeatFigure& figure) {
 std::string panel_caption(const HeatTable& table) {
   std::string means;
   for (const HeatGroup& group : table.groups)
-    if (group.pairs > 0) means += concat(means.empty() ? "mean " : ", ", group.name, " ", rate_text(group.successes, group.episodes));
+    if (group.pairs > 0)
+      means += concat(means.empty() ? "mean " : ", ", group.name, " ", rate_text(group.successes, group.episodes));
   return table.caption + (table.caption.empty() || means.empty() ? "" : "\n") + means;
 }
 
@@ -71,7 +73,9 @@ int HeatmapLayout::right_of(const Panel& panel) const {
   return panel.matrix.right() + (panel.margins.empty() ? 0 : margin_space + int(panel.margins.size()) * margin_cell);
 }
 
-int HeatmapLayout::bottom_of(const Panel& panel) const { return right_of(panel) - panel.matrix.right() + panel.matrix.bottom(); }
+int HeatmapLayout::bottom_of(const Panel& panel) const {
+  return right_of(panel) - panel.matrix.right() + panel.matrix.bottom();
+}
 
 HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& style, const Font& font) {
   HeatmapLayout out{};
@@ -81,7 +85,8 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   const bool several = figure.panels.size() > 1;
   const size_t tasks = first.tasks.size(), envs = first.envs.size(), across = envs * figure.panels.size();
   // Canvas refuses sizes far below this; the bound keeps the sums below from overflowing.
-  if (std::max(tasks, across) > 100'000) fail(Exit::kUsage, "a side of ", std::max(tasks, across), " cells cannot be drawn");
+  if (std::max(tasks, across) > 100'000)
+    fail(Exit::kUsage, "a side of ", std::max(tasks, across), " cells cannot be drawn");
   out.cell = px(style.cell_pt > 0 ? style.cell_pt : automatic_cell_pt(std::max(tasks, across)));
   out.gap = out.cell >= px(8) ? px(0.75) : 0;
   out.label_size = std::clamp(out.cell * 5 / 6, px(kSmallestLabelPt), px(kLabelPt));
@@ -101,7 +106,8 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
     out.panels[i].margins = margins_of(figure.panels[i].table);
     for (const HeatMargin& margin : out.panels[i].margins) margin_labels.push_back(margin.name);
   }
-  const int env_width = widest(out.env_labels, out.label_size, font), margin_width = widest(margin_labels, out.label_size, font);
+  const int env_width = widest(out.env_labels, out.label_size, font),
+            margin_width = widest(margin_labels, out.label_size, font);
   out.env_labels_up = env_width > out.cell - px(3);
   out.margin_labels_up = margin_width > out.margin_cell - px(3);
   out.bar_height = std::clamp(int(tasks) * out.cell, px(90), px(190));
@@ -117,7 +123,8 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
     panel.matrix = {x, 0, width, height};
     right = std::max({out.right_of(panel), x + (width + env_axis + 1) / 2, several ? x + px(kNarrowestPanelPt) : 0});
     const HeatPanel& given = figure.panels[i];
-    panel.heading = Heading(given.title, several ? panel_caption(given.table) : "", right - x, style.scale, font, kPanelTitlePt);
+    panel.heading =
+        Heading(given.title, several ? panel_caption(given.table) : "", right - x, style.scale, font, kPanelTitlePt);
     headings = std::max(headings, panel.heading.height());
     x = right + px(kBetweenPanelsPt);
   }
@@ -135,7 +142,8 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   for (HeatmapLayout::Panel& panel : out.panels) panel.matrix.y = y;
   out.legend.y = y;
   out.env_labels_y = out.bottom_of(out.panels[0]) + space;
-  const int env_depth = out.env_labels_up ? env_width : out.label_size, margin_depth = out.margin_labels_up ? margin_width : out.label_size;
+  const int env_depth = out.env_labels_up ? env_width : out.label_size,
+            margin_depth = out.margin_labels_up ? margin_width : out.label_size;
   out.margin_labels_y = y + height + space;
   const int margin_bottom = style.margins ? out.margin_labels_y + margin_depth : 0;
   out.env_axis_y = out.env_labels_y + env_depth + px(6);

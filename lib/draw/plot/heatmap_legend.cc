@@ -13,7 +13,8 @@ const char kHeading[] = "success rate";
 
 std::string detail_of(const HeatGroup& group) {
   if (group.pairs == 0) return "not evaluated";
-  return concat("mean ", rate_text(group.successes, group.episodes), ", ", group.pairs, group.pairs == 1 ? " pair" : " pairs");
+  return concat("mean ", rate_text(group.successes, group.episodes), ", ", group.pairs,
+                group.pairs == 1 ? " pair" : " pairs");
 }
 
 int entry_height(const HeatmapLegend::Entry& entry, const HeatmapLayout& layout) {
@@ -36,7 +37,8 @@ HeatmapLegend lay_out_legend(const HeatFigure& figure, const HeatmapLayout& layo
   add(Mark::kRamp, table.groups, table.by_part ? "part " : "");
   if (!table.by_part) add(Mark::kPart, table.parts, "part ");
   const auto has_gaps = [](const HeatPanel& panel) {
-    return std::any_of(panel.table.cells.begin(), panel.table.cells.end(), [](const HeatCell& cell) { return !cell.evaluated(); });
+    return std::any_of(panel.table.cells.begin(), panel.table.cells.end(),
+                       [](const HeatCell& cell) { return !cell.evaluated(); });
   };
   if (std::any_of(figure.panels.begin(), figure.panels.end(), has_gaps))
     legend.entries.push_back({Mark::kEmpty, 0, "not evaluated", ""});

@@ -6,7 +6,8 @@ namespace synpo {
 namespace {
 
 int64_t overlap(const Box& a, const Box& b) {
-  const int width = std::min(a.right(), b.right()) - std::max(a.x, b.x), height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  const int width = std::min(a.right(), b.right()) - std::max(a.x, b.x),
+            height = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
   return width > 0 && height > 0 ? int64_t{width} * height : 0;
 }
 
@@ -14,10 +15,17 @@ int64_t overlap(const Box& a, const Box& b) {
 std::vector<Box> candidates(const Box& marker, int width, int height) {
   std::vector<Box> out;
   for (const int gap : {height / 5, height}) {
-    const int left = marker.x - gap - width, right = marker.right() + gap, above = marker.y - gap - height, below = marker.bottom() + gap;
+    const int left = marker.x - gap - width, right = marker.right() + gap, above = marker.y - gap - height,
+              below = marker.bottom() + gap;
     const int middle_x = marker.x + (marker.width - width) / 2, middle_y = marker.y + (marker.height - height) / 2;
-    for (const auto& [x, y] : {std::pair{right, middle_y}, {left, middle_y}, {middle_x, above}, {middle_x, below},
-                               {right, above}, {left, above}, {right, below}, {left, below}})
+    for (const auto& [x, y] : {std::pair{right, middle_y},
+                               {left, middle_y},
+                               {middle_x, above},
+                               {middle_x, below},
+                               {right, above},
+                               {left, above},
+                               {right, below},
+                               {left, below}})
       out.push_back({x, y, width, height});
   }
   return out;

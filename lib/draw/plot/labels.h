@@ -12,7 +12,8 @@ struct LabelledPoint {
   std::string name;
 };
 
-// The boxes of the names, in order: each goes to the side of its marker where it covers least of what is there already, within `plot`.
+// The boxes of the names, in order: each goes to the side of its marker where it covers least of what is there already,
+// within `plot`.
 std::vector<Box> place_labels(const std::vector<LabelledPoint>& points, int size, const Box& plot, const Font& font);
 
 }  // namespace synpo

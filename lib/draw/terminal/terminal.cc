@@ -135,9 +135,13 @@ std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, Termin
   for (size_t i = 0; i < table.groups.size(); ++i) {
     const HeatGroup& group = table.groups[i];
     if (group.pairs == 0) continue;
-    if (coloured) text += ground_code(ramp_colour(group_ramp(table, int(i), scheme), group.rate()), colour) + "   " + kPlainCode + ' ';
-    text += concat(group.name, coloured || mark_of(table, int(i)) == ' ' ? "" : concat(" (", mark_of(table, int(i)), ")"), ": ",
-                   percent(group.rate()), " % of ", group.episodes, " episodes, ", group.pairs, group.pairs == 1 ? " pair\n" : " pairs\n");
+    if (coloured)
+      text +=
+          ground_code(ramp_colour(group_ramp(table, int(i), scheme), group.rate()), colour) + "   " + kPlainCode + ' ';
+    text +=
+        concat(group.name, coloured || mark_of(table, int(i)) == ' ' ? "" : concat(" (", mark_of(table, int(i)), ")"),
+               ": ", percent(group.rate()), " % of ", group.episodes, " episodes, ", group.pairs,
+               group.pairs == 1 ? " pair\n" : " pairs\n");
   }
   return text;
 }

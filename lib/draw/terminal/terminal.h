@@ -2,9 +2,9 @@
 #pragma once
 #include <string>
 
-#include "stats/matrix/heat_table.h"
 #include "draw/colour.h"
 #include "draw/map_style.h"
+#include "stats/matrix/heat_table.h"
 #include "world/grid/maze.h"
 #include "world/kitchen/geometry/kitchen.h"
 
@@ -12,8 +12,8 @@ namespace synpo {
 
 enum class TerminalColour { kNone, k256, kTrue };  // 24 bits where COLORTERM says so
 
-// What the file descriptor can show: nothing where it is no terminal, where TERM is dumb or empty, and where NO_COLOR is set and not
-// empty (https://no-color.org).
+// What the file descriptor can show: nothing where it is no terminal, where TERM is dumb or empty, and where NO_COLOR
+// is set and not empty (https://no-color.org).
 TerminalColour terminal_colour(int fd);
 // As above, but taking it for a terminal.
 TerminalColour environment_colour();
@@ -24,15 +24,17 @@ int terminal_width(int fd);
 std::string ground_code(Rgb ground, TerminalColour colour);
 constexpr char kPlainCode[] = "\033[0m";
 
-// Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after the rate for each
-// kind of pairs but the seen ones. 100 and 0 stand there only where all or none succeeded. Where coloured cells are wider than `width`
-// columns (0: any width is well) they become smaller and lose their numbers. Ends with the means of the kinds.
+// Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after
+// the rate for each kind of pairs but the seen ones. 100 and 0 stand there only where all or none succeeded. Where
+// coloured cells are wider than `width` columns (0: any width is well) they become smaller and lose their numbers. Ends
+// with the means of the kinds.
 std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width);
 
-// Mazes with their names, two columns a cell; walls are '#' without colour. A row has as many mazes as `width` columns hold (0: 80), at
-// most `style.columns` where that is not 0.
+// Mazes with their names, two columns a cell; walls are '#' without colour. A row has as many mazes as `width` columns
+// hold (0: 80), at most `style.columns` where that is not 0.
 std::string terminal_maps(const std::vector<Maze>& mazes, const MapStyle& style, TerminalColour colour, int width);
 // The same of kitchens, in the characters of their plans; floor is blank.
-std::string terminal_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style, TerminalColour colour, int width);
+std::string terminal_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style, TerminalColour colour,
+                              int width);
 
 }  // namespace synpo

@@ -39,7 +39,8 @@ std::string plan_row(const BlockPlan& plan, int row, TerminalColour colour) {
   return text;
 }
 
-std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& style, TerminalColour colour, int width) {
+std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& style, TerminalColour colour,
+                           int width) {
   const std::string between = "  ";
   std::string text = style.title.empty() ? "" : style.title + "\n\n";
   for (size_t first = 0, end; first < plans.size(); first = end) {
@@ -53,7 +54,9 @@ std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& 
     if (first > 0) text += '\n';
     for (size_t i = first; i < end; ++i) {
       text += plans[i].name;
-      if (i + 1 < end) text += std::string(plans[i].width() + between.size() - std::min(plans[i].width(), text_width(plans[i].name)), ' ');
+      if (i + 1 < end)
+        text +=
+            std::string(plans[i].width() + between.size() - std::min(plans[i].width(), text_width(plans[i].name)), ' ');
     }
     text += '\n';
     for (int row = 0; row < rows; ++row) {
@@ -70,20 +73,23 @@ std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& 
 std::string terminal_maps(const std::vector<Maze>& mazes, const MapStyle& style, TerminalColour colour, int width) {
   std::vector<BlockPlan> plans;
   for (const Maze& maze : mazes)
-    plans.push_back({maze.name, kGridSide, kGridSide, [&maze](int row, int column) {
-                       return maze.wall[row * kGridSide + column] ? Block{kPaperWall, ' ', '#'} : Block{kPaperFloor, ' ', ' '};
-                     }});
+    plans.push_back(
+        {maze.name, kGridSide, kGridSide, [&maze](int row, int column) {
+           return maze.wall[row * kGridSide + column] ? Block{kPaperWall, ' ', '#'} : Block{kPaperFloor, ' ', ' '};
+         }});
   return terminal_plans(plans, style, colour, width);
 }
 
-std::string terminal_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style, TerminalColour colour, int width) {
+std::string terminal_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style, TerminalColour colour,
+                              int width) {
   std::vector<BlockPlan> plans;
   for (const Kitchen& kitchen : kitchens)
-    plans.push_back({kitchen.name, kitchen.rows, kitchen.columns, [&kitchen](int row, int column) {
-                       const char c = kitchen.at(row, column);
-                       const bool lettered = std::string(kKitchenReceptacleLetters).find(c) != std::string::npos;
-                       return Block{kitchen_cell_colour(c, paper_floor(kitchen.hash)[0]), lettered ? c : ' ', c == '.' ? ' ' : c};
-                     }});
+    plans.push_back(
+        {kitchen.name, kitchen.rows, kitchen.columns, [&kitchen](int row, int column) {
+           const char c = kitchen.at(row, column);
+           const bool lettered = std::string(kKitchenReceptacleLetters).find(c) != std::string::npos;
+           return Block{kitchen_cell_colour(c, paper_floor(kitchen.hash)[0]), lettered ? c : ' ', c == '.' ? ' ' : c};
+         }});
   return terminal_plans(plans, style, colour, width);
 }
 

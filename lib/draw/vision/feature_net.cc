@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/hash.h"
 #include "base/files/io.h"
+#include "base/hash.h"
 
 namespace synpo {
 namespace {
@@ -30,7 +30,8 @@ struct FeatureNet::Net {
 };
 
 FeatureNet::FeatureNet(const std::string& path, int features, int threads)
-    : path_(path), name_(std::filesystem::path(path).stem().string()), features_(features), net_(std::make_unique<Net>()) {
+    : path_(path), name_(std::filesystem::path(path).stem().string()), features_(features),
+      net_(std::make_unique<Net>()) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   if (threads > 0) cv::setNumThreads(threads);
   Input input(path);
@@ -55,18 +56,21 @@ void FeatureNet::extract(const uint8_t* pictures, int count, float* features) {
   float* out = blob.ptr<float>();
   for (int n = 0; n < count; ++n, pictures += 3 * kPixels)
     for (int c = 0; c < 3; ++c)
-      for (size_t i = 0; i < kPixels; ++i) *out++ = (float(pictures[3 * i + size_t(c)]) / 255 - kMean[c]) / kDeviation[c];
+      for (size_t i = 0; i < kPixels; ++i)
+        *out++ = (float(pictures[3 * i + size_t(c)]) / 255 - kMean[c]) / kDeviation[c];
   cv::Mat made;
   try {
     net_->net.setInput(blob);
     made = net_->net.forward();
   } catch (const cv::Exception& error) {
-    fail(Exit::kData, synpo::quoted(path_), ": OpenCV cannot run it on ", count, " pictures of 3 x ", kSide, " x ", kSide, " (", line_of(error), ")");
+    fail(Exit::kData, synpo::quoted(path_), ": OpenCV cannot run it on ", count, " pictures of 3 x ", kSide, " x ",
+         kSide, " (", line_of(error), ")");
   }
   if (made.type() != CV_32F || made.total() != size_t(count) * size_t(features_) || made.size[0] != count) {
     std::string found;
     for (int i = 0; i < made.dims; ++i) found += (i > 0 ? " x " : "") + std::to_string(made.size[i]);
-    fail(Exit::kData, synpo::quoted(path_), ": found an output of ", found, " for ", count, " pictures, expected ", count, " x ", features_);
+    fail(Exit::kData, synpo::quoted(path_), ": found an output of ", found, " for ", count, " pictures, expected ",
+         count, " x ", features_);
   }
   std::copy_n(made.ptr<float>(), made.total(), features);
 }

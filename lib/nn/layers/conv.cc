@@ -73,15 +73,16 @@ void Conv<T>::prepare(int p, const T* weight, bool training) {
   if (training) backward_[p].pack(Op::kTransposed, out_, depth_, weight, out_);
 }
 
-// Calls body(at) for every tap of every output pixel of one sample, in the order of the gathered rows; `at` is the place of the tap's
-// pixel in x, or -1 outside the picture.
+// Calls body(at) for every tap of every output pixel of one sample, in the order of the gathered rows; `at` is the
+// place of the tap's pixel in x, or -1 outside the picture.
 template <class T>
 template <class Body>
 void Conv<T>::for_taps(Body&& body) const {
   const int padding = kernel_ / 2;
   for (int pixel = 0; pixel < side_out_ * side_out_; ++pixel)
     for (int tap = 0; tap < kernel_ * kernel_; ++tap) {
-      const int r = pixel / side_out_ * stride_ + tap / kernel_ - padding, q = pixel % side_out_ * stride_ + tap % kernel_ - padding;
+      const int r = pixel / side_out_ * stride_ + tap / kernel_ - padding,
+                q = pixel % side_out_ * stride_ + tap % kernel_ - padding;
       const bool inside = unsigned(r) < unsigned(side_) && unsigned(q) < unsigned(side_);
       body(inside ? (r * side_ + q) * in_ : -1);
     }
@@ -111,7 +112,8 @@ void Conv<T>::gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const 
 template <class T>
 void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, samples * rows_, x, depth_, forward_[0], y, out_);
-  for (; samples > unit(); samples -= unit(), x += unit() * x_size(), y += unit() * y_size()) forward(unit(), x, y, scratch);
+  for (; samples > unit(); samples -= unit(), x += unit() * x_size(), y += unit() * y_size())
+    forward(unit(), x, y, scratch);
   const int rows = samples * rows_;
   const size_t inputs_size = size_t(products_) * rows * depth_;
   T* inputs = scratch.grow(inputs_size + (transformed() ? size_t(products_) * rows * out_ : 0));
@@ -121,7 +123,8 @@ void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
   else
     gather_pixels(samples, x, inputs);
   for (int p = 0; p < products_; ++p)
-    gemm(Op::kAsIs, rows, inputs + size_t(p) * rows * depth_, depth_, forward_[p], outputs + size_t(p) * rows * out_, out_);
+    gemm(Op::kAsIs, rows, inputs + size_t(p) * rows * depth_, depth_, forward_[p], outputs + size_t(p) * rows * out_,
+         out_);
   if (transformed()) transform().outputs(tiles(out_, samples, rows), outputs, y);
 }
 
@@ -163,8 +166,8 @@ void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, b
   if (keeps_gradients()) {
     T* gradients = slab.gradients.data() + part.begin / unit() * dfactors_size();
     for (int p = 0; p < products_; ++p)
-      gemm(Op::kTransposed, Op::kAsIs, depth_, out_, rows, inputs + p * stride * depth_, depth_, outputs + p * stride * out_, out_,
-           gradients + size_t(p) * depth_ * out_, out_);
+      gemm(Op::kTransposed, Op::kAsIs, depth_, out_, rows, inputs + p * stride * depth_, depth_,
+           outputs + p * stride * out_, out_, gradients + size_t(p) * depth_ * out_, out_);
   }
   if (!dx) return;
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, outputs, out_, backward_[0], dx, depth_, add_dx);
@@ -184,11 +187,13 @@ void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool acc
   const size_t at = (size_t(p) * depth_ + range.begin) * out_;
   if (keeps_gradients()) {
     Terms<T> parts;
-    for (int part = 0; part < shard_count(samples, unit()); ++part) parts.add(1, slab.gradients.data() + part * dfactors_size() + at);
+    for (int part = 0; part < shard_count(samples, unit()); ++part)
+      parts.add(1, slab.gradients.data() + part * dfactors_size() + at);
     return parts.combine(size_t(range.size()) * out_, dfactors + at, accumulate);
   }
-  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_,
-       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + at, out_, accumulate);
+  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_,
+       slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_, slab.outputs.data() + p * slab.rows * out_,
+       out_, dfactors + at, out_, accumulate);
 }
 
 template <class T>

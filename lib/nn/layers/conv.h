@@ -1,8 +1,9 @@
 // Convolutions on small square pictures in NHWC order, as matrix products over pixels.
 //
-// The forms of kernel/bilinear.h write a convolution as several products of a transformed picture with a transformed weight; every other
-// convolution is one product with gathered pixels. In both cases: inputs [products, rows, depth] from x, outputs [products, rows, out] =
-// inputs factors, y from outputs; the gradients use the adjoint of each of these maps.
+// The forms of kernel/bilinear.h write a convolution as several products of a transformed picture with a transformed
+// weight; every other convolution is one product with gathered pixels. In both cases: inputs [products, rows, depth]
+// from x, outputs [products, rows, out] = inputs factors, y from outputs; the gradients use the adjoint of each of
+// these maps.
 #pragma once
 #include <vector>
 
@@ -12,8 +13,8 @@
 
 namespace synpo {
 
-// Correlation without bias: kernel 3 with padding 1, or kernel 1 without. x is [n, side, side, in], y [n, side_out, side_out, out],
-// the weight [kernel, kernel, in, out].
+// Correlation without bias: kernel 3 with padding 1, or kernel 1 without. x is [n, side, side, in], y [n, side_out,
+// side_out, out], the weight [kernel, kernel, in, out].
 template <class T>
 class Conv {
  public:
@@ -23,26 +24,27 @@ class Conv {
   int side_out() const { return side_out_; }
   int in() const { return in_; }
   int out() const { return out_; }
-  size_t x_size() const { return size_t(side_) * side_ * in_; }            // of one sample
+  size_t x_size() const { return size_t(side_) * side_ * in_; }  // of one sample
   size_t y_size() const { return size_t(side_out_) * side_out_ * out_; }
   size_t weight_size() const { return size_t(kernel_) * kernel_ * in_ * out_; }
   // Multiply-adds that one sample's forward pass executes in matrix products.
   size_t multiply_adds() const { return size_t(products_) * rows_ * depth_ * out_; }
 
-  // Takes product p of the weight over, p < products(); all are due after every change of it, from any threads. Without `training`, for
-  // forward() alone.
+  // Takes product p of the weight over, p < products(); all are due after every change of it, from any threads. Without
+  // `training`, for forward() alone.
   int products() const { return products_; }
   void prepare(int p, const T* weight, bool training);
 
-  // Samples that forward() takes at once: transformed, they fit the second-level cache, and each weight that comes from further away serves as
-  // many rows as may be.
+  // Samples that forward() takes at once: transformed, they fit the second-level cache, and each weight that comes from
+  // further away serves as many rows as may be.
   int unit() const { return side_out_ > 4 ? 16 : side_out_ > 2 ? 32 : 64; }
   // One thread. `scratch` belongs to the thread.
   void forward(int samples, const T* x, T* y, Buffer<T>& scratch) const;
 
-  // Backward, in three parts. The batch is taken in slabs of at most kSlab samples, so that memory does not grow with it. First, parts of a slab, a
-  // unit() each but the last, on any threads: dx (may be null) = or, where add_dx, += the input's gradient; what the weight's gradient needs is kept
-  // in the slab: the parts' own gradients of the transformed weight where those are small, else inputs and outputs.
+  // Backward, in three parts. The batch is taken in slabs of at most kSlab samples, so that memory does not grow with
+  // it. First, parts of a slab, a unit() each but the last, on any threads: dx (may be null) = or, where add_dx, += the
+  // input's gradient; what the weight's gradient needs is kept in the slab: the parts' own gradients of the transformed
+  // weight where those are small, else inputs and outputs.
   static constexpr int kSlab = 512;
   struct Slab {
     Buffer<T> inputs, outputs, gradients;
@@ -50,11 +52,13 @@ class Conv {
   };
   void reserve(Slab& slab, int samples) const;
   void backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const;
-  // Then, when all parts of the slab are done, the gradient of the transformed weight, in shards: dfactors [dfactors_size()] = or +=.
+  // Then, when all parts of the slab are done, the gradient of the transformed weight, in shards: dfactors
+  // [dfactors_size()] = or +=.
   int gradient_shards() const { return products_ * shard_count(depth_, gradient_rows_); }
   void weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
   size_t dfactors_size() const { return size_t(products_) * depth_ * out_; }
-  // At last, where the form is a transformed one, tap by tap: dweight = the weight's gradient. Otherwise dfactors is that.
+  // At last, where the form is a transformed one, tap by tap: dweight = the weight's gradient. Otherwise dfactors is
+  // that.
   bool transformed() const { return form_ == Form::kWinograd || form_ == Form::kToeplitz; }
   static constexpr int kTaps = 9;
   void finish_gradient(int tap, const T* dfactors, T* dweight) const;
@@ -66,24 +70,25 @@ class Conv {
   void gather_pixels(int samples, const T* x, T* inputs) const;
   void gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const;
   const Transform<T>& transform() const;
-  // Inputs and outputs of a part's products, `rows` from one product to the next: in the slab where it keeps them, else in `own`, or x and dy
-  // themselves where they will do.
+  // Inputs and outputs of a part's products, `rows` from one product to the next: in the slab where it keeps them, else
+  // in `own`, or x and dy themselves where they will do.
   struct Operands {
     const T *inputs, *outputs;
     size_t rows;
   };
   Operands operands(Slab& slab, Range part, const T* x, const T* dy, T* own) const;
-  // Whether a part's gradient of the transformed weight is so much smaller than inputs and outputs that it is kept in their place.
+  // Whether a part's gradient of the transformed weight is so much smaller than inputs and outputs that it is kept in
+  // their place.
   bool keeps_gradients() const { return 2 * dfactors_size() <= size_t(unit()) * rows_ * products_ * (depth_ + out_); }
   TileShape tiles(int channels, int samples, size_t rows) const { return {side_, channels, samples, rows}; }
 
   int side_, in_, out_, kernel_, stride_, side_out_;
   Form form_;
-  int products_;  // matrix products of the form
-  int rows_;      // of each product, for one sample
-  int depth_;     // inner extent of each product
-  int gradient_rows_;  // rows of the weight's gradient in a shard
-  std::vector<T> taps_;  // what a product's weight takes of each tap, [products, taps]
+  int products_;                               // matrix products of the form
+  int rows_;                                   // of each product, for one sample
+  int depth_;                                  // inner extent of each product
+  int gradient_rows_;                          // rows of the weight's gradient in a shard
+  std::vector<T> taps_;                        // what a product's weight takes of each tap, [products, taps]
   std::vector<Packed<T>> forward_, backward_;  // a product's weight each, and transposed
 };
 

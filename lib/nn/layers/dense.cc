@@ -5,7 +5,8 @@
 namespace synpo {
 namespace {
 
-// Of the rows of a product, how many are a shard. The other factor is read anew for each: where it fills a processor's own cache, shards are larger.
+// Of the rows of a product, how many are a shard. The other factor is read anew for each: where it fills a processor's
+// own cache, shards are larger.
 int shard_rows(int rows, size_t other_factor) { return rows < 512 || other_factor < 1 << 19 ? 64 : 128; }
 
 // Memory to pack a matrix into, for all threads; nothing of it outlives the next call.
@@ -31,8 +32,8 @@ void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, co
 }
 
 template <class T>
-void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* relu_y, T* dy, T* dx, bool add_dx,
-                    T* dw, T* db) {
+void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* relu_y, T* dy,
+                    T* dx, bool add_dx, T* dw, T* db) {
   const Packed<T>* weight = dx ? &packed(parallel, Op::kTransposed, out, in, w, out) : nullptr;
   const int unit = shard_rows(rows, size_t(in) * out);
   if (dx || relu_y)
@@ -56,8 +57,8 @@ void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, c
   });
 }
 
-#define SYNPO_INSTANTIATE(T)                                                                                   \
-  template void dense_forward(Parallel&, int, int, int, const T*, const T*, const T*, bool, T*);               \
+#define SYNPO_INSTANTIATE(T)                                                                     \
+  template void dense_forward(Parallel&, int, int, int, const T*, const T*, const T*, bool, T*); \
   template void dense_backward(Parallel&, int, int, int, const T*, const T*, const T*, T*, T*, bool, T*, T*);
 SYNPO_INSTANTIATE(float)
 SYNPO_INSTANTIATE(double)

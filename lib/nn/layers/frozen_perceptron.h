@@ -1,4 +1,5 @@
-// A perceptron (perceptron.h) whose weights stay as they are: packed once for both ways, and of gradients that of its input alone.
+// A perceptron (perceptron.h) whose weights stay as they are: packed once for both ways, and of gradients that of its
+// input alone.
 #pragma once
 #include <string>
 #include <vector>

@@ -84,8 +84,8 @@ void BatchNorm<T>::finish_backward(size_t rows, const T* gamma, T* dgamma, T* db
 
 template <class T>
 void BatchNorm<T>::apply_backward(const T* d, const T* z, T* dz, size_t rows, bool masked) const {
-  kernels<T>().norm_backward(rows, channels_, d, z, from_d_.data(), from_z_.data(), constant_.data(), masked ? scale() : nullptr,
-                             masked ? shift() : nullptr, dz);
+  kernels<T>().norm_backward(rows, channels_, d, z, from_d_.data(), from_z_.data(), constant_.data(),
+                             masked ? scale() : nullptr, masked ? shift() : nullptr, dz);
 }
 
 template <class T>

@@ -1,5 +1,6 @@
-// Batch normalisation over rows of [rows, channels], in pieces that fuse with what stands beside it: statistics are gathered while
-// a convolution's output is still in the cache; scaling, addition and ReLU are one pass (kernel/kernels.h).
+// Batch normalisation over rows of [rows, channels], in pieces that fuse with what stands beside it: statistics are
+// gathered while a convolution's output is still in the cache; scaling, addition and ReLU are one pass
+// (kernel/kernels.h).
 #pragma once
 #include <vector>
 
@@ -25,10 +26,12 @@ class ChannelSums {
 template <class T>
 class BatchNorm {
  public:
-  explicit BatchNorm(int channels = 0) : channels_(channels), scale_(channels), shift_(channels), mean_(channels), inverse_sd_(channels) {}
+  explicit BatchNorm(int channels = 0)
+      : channels_(channels), scale_(channels), shift_(channels), mean_(channels), inverse_sd_(channels) {}
   int channels() const { return channels_; }
 
-  // Training, forward: every shard adds its rows (the running mean is subtracted first, so that squares don't cancel) ...
+  // Training, forward: every shard adds its rows (the running mean is subtracted first, so that squares don't cancel)
+  // ...
   void begin(int shards) { sums_.reset(shards, channels_, 2); }
   void add_rows(int shard, const T* z, size_t rows, const T* running_mean);
   // ... then the batch's statistics are made, and the running ones moved (unbiased variance, as PyTorch does it).
@@ -43,8 +46,8 @@ class BatchNorm {
   const T* mean() const { return mean_.data(); }
   const T* inverse_sd() const { return inverse_sd_.data(); }
 
-  // Training, backward: every shard adds sum(d) and sum(d * (z - mean)) over its rows; with `masked`, d is the gradient behind a ReLU that
-  // stands right after the normalisation, here as in apply_backward() ...
+  // Training, backward: every shard adds sum(d) and sum(d * (z - mean)) over its rows; with `masked`, d is the gradient
+  // behind a ReLU that stands right after the normalisation, here as in apply_backward() ...
   void begin_backward(int shards) { sums_.reset(shards, channels_, 2); }
   void add_backward_rows(int shard, const T* d, const T* z, size_t rows, bool masked);
   // ... then dgamma, dbeta = their gradients, and apply_backward gives dz (which may be d itself).

@@ -7,7 +7,8 @@ namespace synpo {
 template <class T>
 Perceptron<T>::Perceptron(const std::string& name, int in, int hidden, int out, Layout& parameters)
     : in_(in), hidden_(hidden), out_(out), hidden_weight_(parameters.add(name + ".hidden.weight", {in, hidden})),
-      hidden_bias_(parameters.add(name + ".hidden.bias", {hidden})), out_weight_(parameters.add(name + ".out.weight", {hidden, out})),
+      hidden_bias_(parameters.add(name + ".hidden.bias", {hidden})),
+      out_weight_(parameters.add(name + ".out.weight", {hidden, out})),
       out_bias_(parameters.add(name + ".out.bias", {out})) {}
 
 template <class T>
@@ -27,12 +28,13 @@ const T* Perceptron<T>::forward(Parallel& parallel, int rows, const T* x, const 
 }
 
 template <class T>
-void Perceptron<T>::backward(Parallel& parallel, const T* x, T* dy, T* dx, bool add_dx, const T* parameters, T* gradient) {
+void Perceptron<T>::backward(Parallel& parallel, const T* x, T* dy, T* dx, bool add_dx, const T* parameters,
+                             T* gradient) {
   T* dh = dh_.grow(size_t(rows_) * hidden_);
-  dense_backward<T>(parallel, rows_, hidden_, out_, h_.data(), parameters + out_weight_, nullptr, dy, dh, false, gradient + out_weight_,
-                    gradient + out_bias_);
-  dense_backward<T>(parallel, rows_, in_, hidden_, x, parameters + hidden_weight_, h_.data(), dh, dx, add_dx, gradient + hidden_weight_,
-                    gradient + hidden_bias_);
+  dense_backward<T>(parallel, rows_, hidden_, out_, h_.data(), parameters + out_weight_, nullptr, dy, dh, false,
+                    gradient + out_weight_, gradient + out_bias_);
+  dense_backward<T>(parallel, rows_, in_, hidden_, x, parameters + hidden_weight_, h_.data(), dh, dx, add_dx,
+                    gradient + hidden_weight_, gradient + hidden_bias_);
 }
 
 template <class T>

@@ -16,10 +16,13 @@ class Encoder {
 
   virtual void initialise(uint64_t seed, T* parameters, T* statistics) const = 0;
 
-  // psi [n, feature] of observations, one behind the other. Keeps what backward() needs, which may be where the observations stand: they have to
-  // live as long. Memory grows with n. Where `frozen`, normalisation takes the running statistics, which stay.
-  virtual void forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T* statistics, T* psi, bool frozen) = 0;
-  // Writes the gradients of the encoder's parameters; dpsi, which may be overwritten, is the gradient of the last forward()'s psi.
+  // psi [n, feature] of observations, one behind the other. Keeps what backward() needs, which may be where the
+  // observations stand: they have to live as long. Memory grows with n. Where `frozen`, normalisation takes the running
+  // statistics, which stay.
+  virtual void forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T* statistics,
+                       T* psi, bool frozen) = 0;
+  // Writes the gradients of the encoder's parameters; dpsi, which may be overwritten, is the gradient of the last
+  // forward()'s psi.
   virtual void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient) = 0;
 
   virtual void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics) = 0;

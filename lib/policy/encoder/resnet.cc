@@ -7,7 +7,8 @@
 
 namespace synpo {
 template <class T>
-ResNet<T>::ResNet(const std::vector<int>& channels, int feature, bool normalise_input, Layout& parameters, Layout& statistics)
+ResNet<T>::ResNet(const std::vector<int>& channels, int feature, bool normalise_input, Layout& parameters,
+                  Layout& statistics)
     : feature_(feature), normalise_input_(normalise_input) {
   static constexpr int strides[4] = {2, 2, 2, 1};
   const auto add_norm = [&](const std::string& name, int count) {
@@ -24,10 +25,12 @@ ResNet<T>::ResNet(const std::vector<int>& channels, int feature, bool normalise_
       const int out = channels[stage], stride = b == 0 ? strides[stage] : 1;
       const std::string name = "encoder.stage" + std::to_string(stage + 1) + ".block" + std::to_string(b + 1);
       Block block;
-      const auto add_conv = [&](const std::string& conv, const std::string& norm, int conv_side, int conv_in, int kernel, int conv_stride) {
+      const auto add_conv = [&](const std::string& conv, const std::string& norm, int conv_side, int conv_in,
+                                int kernel, int conv_stride) {
         const size_t i = block.convs.size();
         block.convs.emplace_back(conv_side, conv_in, out, kernel, conv_stride);
-        const std::vector<int> shape = kernel == 1 ? std::vector<int>{conv_in, out} : std::vector<int>{3, 3, conv_in, out};
+        const std::vector<int> shape =
+            kernel == 1 ? std::vector<int>{conv_in, out} : std::vector<int>{3, 3, conv_in, out};
         block.weights[i] = parameters.add(name + "." + conv + ".weight", shape);
         block.places[i] = add_norm(name + "." + norm, out);
         block.norms[i] = BatchNorm<T>(out);
@@ -55,7 +58,8 @@ void ResNet<T>::initialise(uint64_t seed, T* parameters, T* statistics) const {
     for (size_t i = 0; i < block.convs.size(); ++i) {
       const Conv<T>& conv = block.convs[i];
       // kaiming_uniform with a = sqrt(5), PyTorch's default, is uniform within 1 / sqrt(inputs).
-      stream.uniform(parameters + block.weights[i], conv.weight_size(), 1 / std::sqrt(double(conv.weight_size()) / conv.out()));
+      stream.uniform(parameters + block.weights[i], conv.weight_size(),
+                     1 / std::sqrt(double(conv.weight_size()) / conv.out()));
       std::fill_n(parameters + block.places[i].scale, conv.out(), T(1));
       std::fill_n(parameters + block.places[i].shift, conv.out(), T(0));
       std::fill_n(statistics + block.places[i].mean, conv.out(), T(0));
@@ -92,7 +96,8 @@ void ResNet<T>::prepare_convs(Parallel& parallel, const T* parameters, bool trai
   std::vector<Part> parts;
   for (size_t b = blocks_.size(); b-- > 0;)  // the largest first, so that threads end together
     for (size_t i = 0; i < blocks_[b].convs.size(); ++i)
-      for (int p = 0; p < blocks_[b].convs[i].products(); ++p) parts.push_back({&blocks_[b].convs[i], p, blocks_[b].weights[i]});
+      for (int p = 0; p < blocks_[b].convs[i].products(); ++p)
+        parts.push_back({&blocks_[b].convs[i], p, blocks_[b].weights[i]});
   parallel.run(int(parts.size()), [&](int shard, int) {
     const Part& part = parts[shard];
     part.conv->prepare(part.product, parameters + part.weight, training);
@@ -116,8 +121,8 @@ void ResNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const
       const int count = block.convs[i].out();
       const NormPlace& place = block.places[i];
       block.frozen[i].resize(2 * count);
-      frozen_norm(count, parameters + place.scale, parameters + place.shift, statistics + place.mean, statistics + place.variance,
-                  block.frozen[i].data(), block.frozen[i].data() + count);
+      frozen_norm(count, parameters + place.scale, parameters + place.shift, statistics + place.mean,
+                  statistics + place.variance, block.frozen[i].data(), block.frozen[i].data() + count);
     }
   if (normalise_input_) freeze_input(statistics);
   fc_packed_.pack(Op::kAsIs, int(flat_), feature_, parameters + fc_weight_, feature_);
@@ -142,8 +147,8 @@ void ResNet<T>::infer(int thread, int n, const uint8_t* pictures, T* psi) {
     block.convs[1].forward(n, spare[0], spare[1], products);
     const bool own = block.has_shortcut();
     if (own) block.convs[2].forward(n, x, spare[2], products);
-    kernels<T>().norm_add_relu(rows, out, spare[1], scale(1), shift(1), own ? spare[2] : x, own ? scale(2) : nullptr, own ? shift(2) : nullptr,
-                               next);
+    kernels<T>().norm_add_relu(rows, out, spare[1], scale(1), shift(1), own ? spare[2] : x, own ? scale(2) : nullptr,
+                               own ? shift(2) : nullptr, next);
     std::swap(x, next);
   }
   gemm(Op::kAsIs, n, x, int(flat_), fc_packed_, psi, feature_);

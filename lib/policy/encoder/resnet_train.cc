@@ -51,7 +51,8 @@ void ResNet<T>::finish_block(Block& block, Range samples) {
   const bool own = block.has_shortcut();
   const T* shortcut = own ? block.z[2].data() : block_input(&block - blocks_.data());
   kernels<T>().norm_add_relu(rows, conv.out(), block.z[1].data() + at, norm.scale(), norm.shift(), shortcut + at,
-                             own ? block.norms[2].scale() : nullptr, own ? block.norms[2].shift() : nullptr, block.y.data() + at);
+                             own ? block.norms[2].scale() : nullptr, own ? block.norms[2].shift() : nullptr,
+                             block.y.data() + at);
 }
 
 template <class T>
@@ -78,16 +79,17 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
     const auto finish_norm = [&](int i) {
       const NormPlace& place = block.places[i];
       if (frozen)
-        return block.norms[i].freeze(parameters + place.scale, parameters + place.shift, statistics + place.mean, statistics + place.variance);
-      block.norms[i].finish(size_t(n) * pixels, parameters + place.scale, parameters + place.shift, statistics + place.mean,
-                            statistics + place.variance);
+        return block.norms[i].freeze(parameters + place.scale, parameters + place.shift, statistics + place.mean,
+                                     statistics + place.variance);
+      block.norms[i].finish(size_t(n) * pixels, parameters + place.scale, parameters + place.shift,
+                            statistics + place.mean, statistics + place.variance);
     };
     for (size_t i = 0; i < block.convs.size(); ++i) block.norms[i].begin(shards);
     parallel.run(shards, [&](int shard, int thread) {
       const Range range = shard_range(n, unit, shard);
       if (b == 0)
-        expand(range.size(), pictures + size_t(range.begin) * kGridCells * kHistory, input_shift_.data(), input_scale_.data(),
-               input_.data() + range.begin * kInputSize);
+        expand(range.size(), pictures + size_t(range.begin) * kGridCells * kHistory, input_shift_.data(),
+               input_scale_.data(), input_.data() + range.begin * kInputSize);
       else
         finish_block(blocks_[b - 1], range);
       convolve(0, x + range.begin * block.convs[0].x_size(), range, shard, thread);
@@ -99,14 +101,17 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
       const Range range = shard_range(n, unit, shard);
       const size_t size = block.convs[0].y_size();
       T* y1 = scratch_[thread].picture.grow(range.size() * size);
-      kernels<T>().norm_relu(size_t(range.size()) * pixels, block.convs[0].out(), block.z[0].data() + range.begin * size,
-                             block.norms[0].scale(), block.norms[0].shift(), y1);
+      kernels<T>().norm_relu(size_t(range.size()) * pixels, block.convs[0].out(),
+                             block.z[0].data() + range.begin * size, block.norms[0].scale(), block.norms[0].shift(),
+                             y1);
       convolve(1, y1, range, shard, thread);
     });
     finish_norm(1);
   }
-  parallel.run(shard_count(n, kUnit), [&](int shard, int) { finish_block(blocks_.back(), shard_range(n, kUnit, shard)); });
-  dense_forward(parallel, n, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_, parameters + fc_bias_, false, psi);
+  parallel.run(shard_count(n, kUnit),
+               [&](int shard, int) { finish_block(blocks_.back(), shard_range(n, kUnit, shard)); });
+  dense_forward(parallel, n, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_,
+                parameters + fc_bias_, false, psi);
 }
 
 // `d`, the gradient of the block's output, is masked by its ReLU and summed for the normalisations before it.
@@ -123,12 +128,13 @@ void ResNet<T>::add_block_sums(Block& block, int shard, Range samples, T* d) {
 template <class T>
 void ResNet<T>::finish_norm_backward(Block& block, int i, const T* parameters, T* gradient) {
   const Conv<T>& conv = block.convs[i];
-  block.norms[i].finish_backward(n_ * conv.y_size() / conv.out(), parameters + block.places[i].scale, gradient + block.places[i].scale,
-                                 gradient + block.places[i].shift);
+  block.norms[i].finish_backward(n_ * conv.y_size() / conv.out(), parameters + block.places[i].scale,
+                                 gradient + block.places[i].scale, gradient + block.places[i].shift);
 }
 
 template <class T>
-void ResNet<T>::weight_gradients(Parallel& parallel, Block& block, std::initializer_list<int> convs, Range samples, T* gradient) {
+void ResNet<T>::weight_gradients(Parallel& parallel, Block& block, std::initializer_list<int> convs, Range samples,
+                                 T* gradient) {
   std::vector<std::pair<int, int>> shards;
   for (const int i : convs)
     for (int shard = 0; shard < block.convs[i].gradient_shards(); ++shard) shards.emplace_back(i, shard);
@@ -168,7 +174,8 @@ void ResNet<T>::backward_inner(Parallel& parallel, Block& block, const T* parame
   finish_norm_backward(block, 0, parameters, gradient);
 }
 
-// From dy1_ and d_ through the first convolution and the shortcut: d_ becomes the gradient of the block before, masked and summed.
+// From dy1_ and d_ through the first convolution and the shortcut: d_ becomes the gradient of the block before, masked
+// and summed.
 template <class T>
 void ResNet<T>::backward_outer(Parallel& parallel, size_t b, T* gradient) {
   Block& block = blocks_[b];
@@ -214,10 +221,12 @@ void ResNet<T>::backward(Parallel& parallel, const T* parameters, T* dpsi, T* gr
       if (block.convs[i].transformed()) block.dfactors[i].grow(block.convs[i].dfactors_size());
   std::fill_n(gradient + fc_weight_, flat_ * feature_, T(0));
   std::fill_n(gradient + fc_bias_, feature_, T(0));
-  dense_backward<T>(parallel, n_, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_, nullptr, dpsi, d_.data(), false,
-                    gradient + fc_weight_, gradient + fc_bias_);
+  dense_backward<T>(parallel, n_, int(flat_), feature_, blocks_.back().y.data(), parameters + fc_weight_, nullptr, dpsi,
+                    d_.data(), false, gradient + fc_weight_, gradient + fc_bias_);
   for (BatchNorm<T>& norm : blocks_.back().norms) norm.begin_backward(shard_count(n_, kUnit));
-  parallel.run(shard_count(n_, kUnit), [&](int shard, int) { add_block_sums(blocks_.back(), shard, shard_range(n_, kUnit, shard), d_.data()); });
+  parallel.run(shard_count(n_, kUnit), [&](int shard, int) {
+    add_block_sums(blocks_.back(), shard, shard_range(n_, kUnit, shard), d_.data());
+  });
   for (size_t b = blocks_.size(); b-- > 0;) {
     Block& block = blocks_[b];
     finish_norm_backward(block, 1, parameters, gradient);

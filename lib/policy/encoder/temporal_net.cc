@@ -10,7 +10,8 @@
 namespace synpo {
 namespace {
 
-// Both factors of the first convolution's products are larger than a processor's own cache, and one is read anew for each shard.
+// Both factors of the first convolution's products are larger than a processor's own cache, and one is read anew for
+// each shard.
 constexpr int kUnit = 128;   // states of a shard
 constexpr int kBlock = 256;  // rows of a weight's gradient that are computed together
 
@@ -18,8 +19,9 @@ constexpr int kBlock = 256;  // rows of a weight's gradient that are computed to
 
 template <class T>
 TemporalNet<T>::TemporalNet(const TemporalSizes& sizes, int feature, Layout& parameters)
-    : sizes_(sizes), feature_(feature),
-      first_{sizes.view, parameters.add("encoder.conv1.weight", {kTaps, sizes.view, sizes.channels}), parameters.add("encoder.conv1.bias", {sizes.channels})},
+    : sizes_(sizes),
+      feature_(feature), first_{sizes.view, parameters.add("encoder.conv1.weight", {kTaps, sizes.view, sizes.channels}),
+                                parameters.add("encoder.conv1.bias", {sizes.channels})},
       second_{sizes.channels, parameters.add("encoder.conv2.weight", {kTaps, sizes.channels, sizes.channels}),
               parameters.add("encoder.conv2.bias", {sizes.channels})},
       objects_(parameters.add("encoder.object", {sizes.objects, sizes.object_embedding})),
@@ -41,7 +43,8 @@ template <class T>
 const T* TemporalNet<T>::values(int n, const uint8_t* observations, Buffer<T>& own) const {
   const size_t count = n * row();
   if constexpr (std::is_same_v<T, float>) {
-    if (reinterpret_cast<uintptr_t>(observations) % alignof(float) == 0) return reinterpret_cast<const float*>(observations);
+    if (reinterpret_cast<uintptr_t>(observations) % alignof(float) == 0)
+      return reinterpret_cast<const float*>(observations);
     std::memcpy(own.grow(count), observations, count * sizeof(float));
   } else {
     T* to = own.grow(count);
@@ -57,7 +60,8 @@ const T* TemporalNet<T>::values(int n, const uint8_t* observations, Buffer<T>& o
 template <class T>
 void TemporalNet<T>::pack_first(Parallel& parallel, const T* parameters, Packed<T>* taps) const {
   for (int tap = 0; tap < kTaps; ++tap)
-    taps[tap].pack(parallel, Op::kAsIs, sizes_.view, sizes_.channels, parameters + tap_offset(first_, tap), sizes_.channels);
+    taps[tap].pack(parallel, Op::kAsIs, sizes_.view, sizes_.channels, parameters + tap_offset(first_, tap),
+                   sizes_.channels);
 }
 
 template <class T>
@@ -67,7 +71,8 @@ void TemporalNet<T>::convolve(int n, const T* x, const Packed<T>* taps, const T*
   for (int t = 0; t < 2; ++t) {
     const int first = t == 0 ? 1 : 0;
     for (int tap = first; tap < kTaps; ++tap)
-      gemm(Op::kAsIs, n, x + size_t(2 * t - 1 + tap) * sizes_.view, int(row()), taps[tap], y1 + t * c, 2 * c, tap > first);
+      gemm(Op::kAsIs, n, x + size_t(2 * t - 1 + tap) * sizes_.view, int(row()), taps[tap], y1 + t * c, 2 * c,
+           tap > first);
   }
   kernels<T>().add_bias(2 * n, c, bias, true, y1);
 }
@@ -76,12 +81,14 @@ template <class T>
 void TemporalNet<T>::put_objects(int n, const T* x, const T* objects, T* joined) const {
   const size_t hand = size_t(kHistory) * sizes_.view, width = size_t(sizes_.object_embedding);
   for (int i = 0; i < n; ++i)
-    std::copy_n(objects + size_t(x[i * row() + hand]) * width, width, joined + size_t(i) * joined_width() + sizes_.channels);
+    std::copy_n(objects + size_t(x[i * row() + hand]) * width, width,
+                joined + size_t(i) * joined_width() + sizes_.channels);
 }
 
 // The second convolution has one output, which reads all of the first one's through its last two taps: a dense layer.
 template <class T>
-void TemporalNet<T>::forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T*, T* psi, bool) {
+void TemporalNet<T>::forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T*, T* psi,
+                             bool) {
   n_ = n;
   x_ = values(n, observations, own_);
   pack_first(parallel, parameters, taps_);
@@ -91,7 +98,8 @@ void TemporalNet<T>::forward(Parallel& parallel, int n, const uint8_t* observati
     const Range range = shard_range(n, kUnit, shard);
     convolve(range.size(), x_ + range.begin * row(), taps_, parameters + first_.bias, y1 + range.begin * 2 * c);
   });
-  dense_forward(parallel, n, 2 * sizes_.channels, sizes_.channels, y1, parameters + tap_offset(second_, 1), parameters + second_.bias, true, y2);
+  dense_forward(parallel, n, 2 * sizes_.channels, sizes_.channels, y1, parameters + tap_offset(second_, 1),
+                parameters + second_.bias, true, y2);
   for (size_t i = 0; i < size_t(n); ++i) std::copy_n(y2 + i * c, c, joined + i * width);
   put_objects(n, x_, parameters + objects_, joined);
   std::copy_n(fc_.forward(parallel, n, joined, parameters), size_t(n) * feature_, psi);
@@ -129,7 +137,8 @@ void TemporalNet<T>::backward(Parallel& parallel, const T* parameters, T* dpsi, 
     const Range range = shard_range(v, kBlock, (shard - 1) % blocks);
     T* to = gradient + tap_offset(first_, tap) + size_t(range.begin) * c;
     for (int t = first; t < 2; ++t)
-      gemm(Op::kTransposed, range.size(), x_ + size_t(2 * t - 1 + tap) * v + range.begin, int(row()), dy1_packed_[t], to, c, t > first);
+      gemm(Op::kTransposed, range.size(), x_ + size_t(2 * t - 1 + tap) * v + range.begin, int(row()), dy1_packed_[t],
+           to, c, t > first);
   });
 }
 
@@ -141,7 +150,8 @@ void TemporalNet<T>::prepare_inference(Parallel& parallel, const T* parameters, 
   fc_.prepare_inference(parameters);
   bias_values_.assign(parameters + first_.bias, parameters + first_.bias + c);
   bias_values_.insert(bias_values_.end(), parameters + second_.bias, parameters + second_.bias + c);
-  object_values_.assign(parameters + objects_, parameters + objects_ + size_t(sizes_.objects) * sizes_.object_embedding);
+  object_values_.assign(parameters + objects_,
+                        parameters + objects_ + size_t(sizes_.objects) * sizes_.object_embedding);
   scratch_.resize(std::max<size_t>(scratch_.size(), parallel.threads()));
 }
 
@@ -153,7 +163,8 @@ void TemporalNet<T>::infer(int thread, int n, const uint8_t* observations, T* ps
   T *y1 = s.y1.grow(size_t(n) * 2 * c), *joined = s.joined.grow(size_t(n) * joined_width());
   convolve(n, x, infer_taps_, bias_values_.data(), y1);
   gemm(Op::kAsIs, n, y1, 2 * c, infer_second_, joined, joined_width());
-  for (int i = 0; i < n; ++i) kernels<T>().add_bias(1, c, bias_values_.data() + c, true, joined + size_t(i) * joined_width());
+  for (int i = 0; i < n; ++i)
+    kernels<T>().add_bias(1, c, bias_values_.data() + c, true, joined + size_t(i) * joined_width());
   put_objects(n, x, object_values_.data(), joined);
   fc_.infer(n, joined, psi, s.hidden);
 }

@@ -1,15 +1,15 @@
 // The state feature psi(s) of the kitchens: the temporal network of Table 3.
 //
-// Two convolutions over time, kernel 3, stride 2, padding 1, each with ReLU: 2048 x 4 -> 1024 x 2 -> 1024 x 1. Behind it comes the embedding of the
-// object in the hand, and a perceptron: 1056 -> 2048 ReLU -> 256. A padded view is zero, so of the taps of the first convolution five are
-// multiplied, and of the second one's two: its first never is.
+// Two convolutions over time, kernel 3, stride 2, padding 1, each with ReLU: 2048 x 4 -> 1024 x 2 -> 1024 x 1. Behind
+// it comes the embedding of the object in the hand, and a perceptron: 1056 -> 2048 ReLU -> 256. A padded view is zero,
+// so of the taps of the first convolution five are multiplied, and of the second one's two: its first never is.
 #pragma once
 #include <string>
 #include <vector>
 
 #include "nn/gemm.h"
-#include "nn/layout.h"
 #include "nn/layers/perceptron.h"
+#include "nn/layout.h"
 #include "policy/encoder/encoder.h"
 #include "policy/temporal_sizes.h"
 
@@ -21,13 +21,15 @@ class TemporalNet : public Encoder<T> {
   // Appends its tensors to the layout, under `encoder.`.
   TemporalNet(const TemporalSizes& sizes, int feature, Layout& parameters);
 
-  // float [history, view], oldest first, and kHandFloats more, the first of which is the number of the object in the hand.
+  // float [history, view], oldest first, and kHandFloats more, the first of which is the number of the object in the
+  // hand.
   size_t observation_size() const override { return (size_t(kHistory) * sizes_.view + kHandFloats) * sizeof(float); }
 
   // Convolutions as PyTorch does by default, dense layers Xavier uniform, the objects' embeddings N(0, 1).
   void initialise(uint64_t seed, T* parameters, T* statistics) const override;
 
-  void forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T* statistics, T* psi, bool frozen) override;
+  void forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T* statistics, T* psi,
+               bool frozen) override;
   void backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient) override;
 
   void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics) override;

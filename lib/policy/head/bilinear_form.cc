@@ -27,19 +27,19 @@ void BilinearForm<T>::compose(Parallel& parallel, int rows, const T* coefficient
   const int size = int(matrix_size());
   parallel.run(shard_count(rows, kRows), [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
-    gemm(Op::kAsIs, Op::kTransposed, range.size(), size, basis_, coefficients + size_t(range.begin) * basis_, basis_, parameters + theta_,
-         basis_, w + size_t(range.begin) * size, size);
+    gemm(Op::kAsIs, Op::kTransposed, range.size(), size, basis_, coefficients + size_t(range.begin) * basis_, basis_,
+         parameters + theta_, basis_, w + size_t(range.begin) * size, size);
   });
 }
 
 template <class T>
-void BilinearForm<T>::compose_backward(Parallel& parallel, int rows, const T* coefficients, const T* dw, const T* parameters,
-                                       T* dcoefficients, T* gradient) const {
+void BilinearForm<T>::compose_backward(Parallel& parallel, int rows, const T* coefficients, const T* dw,
+                                       const T* parameters, T* dcoefficients, T* gradient) const {
   const int size = int(matrix_size());
   parallel.run(shard_count(rows, kRows), [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
-    gemm(Op::kAsIs, Op::kAsIs, range.size(), basis_, size, dw + size_t(range.begin) * size, size, parameters + theta_, basis_,
-         dcoefficients + size_t(range.begin) * basis_, basis_);
+    gemm(Op::kAsIs, Op::kAsIs, range.size(), basis_, size, dw + size_t(range.begin) * size, size, parameters + theta_,
+         basis_, dcoefficients + size_t(range.begin) * basis_, basis_);
   });
   parallel.run(shard_count(size, kRows), [&](int shard, int) {
     const Range range = shard_range(size, kRows, shard);
@@ -69,7 +69,8 @@ void BilinearForm<T>::scores(int rows, const T* q, const T* parameters, T* score
   if (direct())
     std::copy_n(q, size_t(rows) * actions_, scores);
   else
-    gemm(Op::kAsIs, Op::kTransposed, rows, actions_, columns_, q, columns_, parameters + phi_, columns_, scores, actions_);
+    gemm(Op::kAsIs, Op::kTransposed, rows, actions_, columns_, q, columns_, parameters + phi_, columns_, scores,
+         actions_);
 }
 
 template <class T>
@@ -83,7 +84,8 @@ void BilinearForm<T>::scores_backward(int rows, const T* dscores, const T* param
 template <class T>
 void BilinearForm<T>::phi_backward(int rows, const T* q, const T* dscores, T* gradient) const {
   if (!direct())
-    gemm(Op::kTransposed, Op::kAsIs, actions_, columns_, rows, dscores, actions_, q, columns_, gradient + phi_, columns_, true);
+    gemm(Op::kTransposed, Op::kAsIs, actions_, columns_, rows, dscores, actions_, q, columns_, gradient + phi_,
+         columns_, true);
 }
 
 template <class T>
@@ -126,24 +128,28 @@ void BilinearForm<T>::use_actions(Parallel& parallel, const std::vector<int>& ac
   const int count = int(actions.size());
   const size_t size = action_matrix_size();
   T* phi = phi_used_.grow(size_t(count) * columns_);
-  for (int i = 0; i < count; ++i) std::copy_n(parameters + phi_ + size_t(actions[i]) * columns_, columns_, phi + size_t(i) * columns_);
+  for (int i = 0; i < count; ++i)
+    std::copy_n(parameters + phi_ + size_t(actions[i]) * columns_, columns_, phi + size_t(i) * columns_);
   T* matrices = matrices_.grow(count * size);
   dmatrices_.grow(count * size);
   dmatrices_.zero();
   parallel.run(feature_, [&](int row, int) {
     const size_t at = size_t(row) * basis_;
-    gemm(Op::kAsIs, Op::kAsIs, count, basis_, columns_, phi, columns_, parameters + theta_ + at, int(size), matrices + at, int(size));
+    gemm(Op::kAsIs, Op::kAsIs, count, basis_, columns_, phi, columns_, parameters + theta_ + at, int(size),
+         matrices + at, int(size));
   });
 }
 
 template <class T>
 const T* BilinearForm<T>::action_matrix(int number, const T* parameters) const {
-  return direct() ? parameters + theta_ + used_[number] * action_matrix_size() : matrices_.data() + number * action_matrix_size();
+  return direct() ? parameters + theta_ + used_[number] * action_matrix_size()
+                  : matrices_.data() + number * action_matrix_size();
 }
 
 template <class T>
 T* BilinearForm<T>::action_matrix_gradient(int number, T* gradient) {
-  return direct() ? gradient + theta_ + used_[number] * action_matrix_size() : dmatrices_.data() + number * action_matrix_size();
+  return direct() ? gradient + theta_ + used_[number] * action_matrix_size()
+                  : dmatrices_.data() + number * action_matrix_size();
 }
 
 template <class T>
@@ -153,12 +159,14 @@ void BilinearForm<T>::finish_actions(Parallel& parallel, const T* parameters, T*
   const T *phi = phi_used_.data(), *d = dmatrices_.data();
   parallel.run(feature_, [&](int row, int) {
     const size_t at = size_t(row) * basis_;
-    gemm(Op::kTransposed, Op::kAsIs, columns_, basis_, count, phi, columns_, d + at, size, gradient + theta_ + at, size, true);
+    gemm(Op::kTransposed, Op::kAsIs, columns_, basis_, count, phi, columns_, d + at, size, gradient + theta_ + at, size,
+         true);
   });
   std::vector<T> dphi(size_t(count) * columns_);
   gemm(Op::kAsIs, Op::kTransposed, count, columns_, size, d, size, parameters + theta_, size, dphi.data(), columns_);
   for (int i = 0; i < count; ++i)
-    for (int c = 0; c < columns_; ++c) gradient[phi_ + size_t(used_[i]) * columns_ + c] += dphi[size_t(i) * columns_ + c];
+    for (int c = 0; c < columns_; ++c)
+      gradient[phi_ + size_t(used_[i]) * columns_ + c] += dphi[size_t(i) * columns_ + c];
 }
 
 template class BilinearForm<float>;

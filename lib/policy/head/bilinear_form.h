@@ -1,8 +1,9 @@
-// psi(s)^T W(z) phi(a) with W(z) = sum_k c_k(z) Theta_k: what scores actions, predicts rewards and, with the coefficients taken away, makes
-// x(s, a)_k = psi(s)^T Theta_k phi(a) (supplement, Section 4.1).
+// psi(s)^T W(z) phi(a) with W(z) = sum_k c_k(z) Theta_k: what scores actions, predicts rewards and, with the
+// coefficients taken away, makes x(s, a)_k = psi(s)^T Theta_k phi(a) (supplement, Section 4.1).
 //
-// Direct form: phi(a) is one-hot, so that Theta_k phi(a) is one tensor theta [A, d, K]. General form: theta [D, d, K] and learned phi [A, D].
-// W costs D d K once a pair, and a state then D d + A D. In both, `columns` is the first extent of theta.
+// Direct form: phi(a) is one-hot, so that Theta_k phi(a) is one tensor theta [A, d, K]. General form: theta [D, d, K]
+// and learned phi [A, D]. W costs D d K once a pair, and a state then D d + A D. In both, `columns` is the first extent
+// of theta.
 #pragma once
 #include <vector>
 
@@ -28,8 +29,8 @@ class BilinearForm {
 
   // w [rows, columns, d] of coefficients [rows, K].
   void compose(Parallel& parallel, int rows, const T* coefficients, const T* parameters, T* w) const;
-  void compose_backward(Parallel& parallel, int rows, const T* coefficients, const T* dw, const T* parameters, T* dcoefficients,
-                        T* gradient) const;
+  void compose_backward(Parallel& parallel, int rows, const T* coefficients, const T* dw, const T* parameters,
+                        T* dcoefficients, T* gradient) const;
 
   // q [columns] = W psi of one state; dpsi +=, dw +=.
   void apply(const T* w, const T* psi, T* q) const;
@@ -47,8 +48,8 @@ class BilinearForm {
   void prepare_inference(const T* parameters);
   void infer(int rows, const T* q, T* scores) const;
 
-  // For x(s, a): the matrices theta phi(a) [d, K] of some different actions. Gradients of them that have come together in
-  // action_matrix_gradient() are taken further by finish_actions().
+  // For x(s, a): the matrices theta phi(a) [d, K] of some different actions. Gradients of them that have come together
+  // in action_matrix_gradient() are taken further by finish_actions().
   void use_actions(Parallel& parallel, const std::vector<int>& actions, const T* parameters);
   const T* action_matrix(int number, const T* parameters) const;
   T* action_matrix_gradient(int number, T* gradient);

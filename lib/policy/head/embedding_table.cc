@@ -41,7 +41,8 @@ template <class T>
 void EmbeddingTable<T>::backward(const T* parameters, T* gradient) {
   for (int i = 0; i < count_; ++i) {
     const size_t at = at_ + size_t(i) * width_;
-    if (normalise_) length_backward(row(i), width_, width_, length_factor(parameters + at, width_, width_), gradient_row(i));
+    if (normalise_)
+      length_backward(row(i), width_, width_, length_factor(parameters + at, width_, width_), gradient_row(i));
     for (int c = 0; c < width_; ++c) gradient[at + c] += gradient_row(i)[c];
   }
 }

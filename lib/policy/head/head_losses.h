@@ -17,16 +17,19 @@ double policy_loss(Parallel& parallel, int rows, int actions, const T* scores, c
   parallel.run(shards, [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
     for (int i = range.begin; i < range.end; ++i)
-      loss[shard] += cross_entropy(scores + size_t(i) * actions, actions, label[i], T(1) / T(rows), dscores + size_t(i) * actions);
+      loss[shard] +=
+          cross_entropy(scores + size_t(i) * actions, actions, label[i], T(1) / T(rows), dscores + size_t(i) * actions);
   });
   double sum = 0;
   for (const double part : loss) sum += part;
   return sum / rows;
 }
 
-// Mean squared error of the rewards predicted for each action, [rows, actions], at the action taken; dpredicted = weight times its gradient.
+// Mean squared error of the rewards predicted for each action, [rows, actions], at the action taken; dpredicted =
+// weight times its gradient.
 template <class T>
-double reward_loss(int rows, int actions, const T* predicted, const int* taken, const T* reward, double weight, T* dpredicted) {
+double reward_loss(int rows, int actions, const T* predicted, const int* taken, const T* reward, double weight,
+                   T* dpredicted) {
   std::fill_n(dpredicted, size_t(rows) * actions, T(0));
   double sum = 0;
   for (int i = 0; i < rows; ++i) {

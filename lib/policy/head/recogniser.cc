@@ -11,12 +11,13 @@ constexpr int kRows = 64;  // of a shard
 }  // namespace
 
 template <class T>
-Recogniser<T>::Recogniser(const std::string& name, int in, int hidden, const EmbeddingTable<T>& table, Layout& parameters)
+Recogniser<T>::Recogniser(const std::string& name, int in, int hidden, const EmbeddingTable<T>& table,
+                          Layout& parameters)
     : f_(name, in, hidden, table.width(), parameters) {}
 
 template <class T>
-double Recogniser<T>::step(Parallel& parallel, int rows, const T* x, const int* truth, EmbeddingTable<T>& table, double weight,
-                           const T* parameters, T* dx, T* gradient) {
+double Recogniser<T>::step(Parallel& parallel, int rows, const T* x, const int* truth, EmbeddingTable<T>& table,
+                           double weight, const T* parameters, T* dx, T* gradient) {
   const int width = table.width(), classes = table.count();
   const T* f = f_.forward(parallel, rows, x, parameters);
   T* df = df_.grow(size_t(rows) * width);
@@ -27,10 +28,13 @@ double Recogniser<T>::step(Parallel& parallel, int rows, const T* x, const int* 
   parallel.run(shards, [&](int shard, int) {
     const Range range = shard_range(rows, kRows, shard);
     const size_t at = size_t(range.begin) * classes, f_at = size_t(range.begin) * width;
-    gemm(Op::kAsIs, Op::kTransposed, range.size(), classes, width, f + f_at, width, table.values(), width, scores + at, classes);
+    gemm(Op::kAsIs, Op::kTransposed, range.size(), classes, width, f + f_at, width, table.values(), width, scores + at,
+         classes);
     for (int i = range.begin; i < range.end; ++i)
-      loss[shard] += cross_entropy(scores + size_t(i) * classes, classes, truth[i], T(weight / rows), dscores + size_t(i) * classes);
-    gemm(Op::kAsIs, Op::kAsIs, range.size(), width, classes, dscores + at, classes, table.values(), width, df + f_at, width);
+      loss[shard] += cross_entropy(scores + size_t(i) * classes, classes, truth[i], T(weight / rows),
+                                   dscores + size_t(i) * classes);
+    gemm(Op::kAsIs, Op::kAsIs, range.size(), width, classes, dscores + at, classes, table.values(), width, df + f_at,
+         width);
   });
   gemm(Op::kTransposed, Op::kAsIs, classes, width, rows, dscores, classes, f, width, table.gradient(), width, true);
   f_.backward(parallel, x, df, dx, true, parameters, gradient);

@@ -15,10 +15,10 @@ class Recogniser {
 
   void initialise(InitStream& stream, T* parameters) const { f_.initialise(stream, parameters); }
 
-  // The mean cross-entropy of x [rows, in] against truth [rows]. `weight` times its gradients are added to dx, to the parameters' gradient
-  // and to the table's.
-  double step(Parallel& parallel, int rows, const T* x, const int* truth, EmbeddingTable<T>& table, double weight, const T* parameters, T* dx,
-              T* gradient);
+  // The mean cross-entropy of x [rows, in] against truth [rows]. `weight` times its gradients are added to dx, to the
+  // parameters' gradient and to the table's.
+  double step(Parallel& parallel, int rows, const T* x, const int* truth, EmbeddingTable<T>& table, double weight,
+              const T* parameters, T* dx, T* gradient);
 
  private:
   Perceptron<T> f_;

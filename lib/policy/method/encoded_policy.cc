@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "policy/head/head_losses.h"
 #include "policy/encoder/resnet.h"
 #include "policy/encoder/temporal_net.h"
+#include "policy/head/head_losses.h"
 
 namespace synpo {
 namespace {
@@ -19,7 +19,8 @@ std::unique_ptr<Encoder<T>> make_encoder(const PolicyShape& shape, Layout& param
 
 template <class T>
 EncodedPolicy<T>::EncodedPolicy(const PolicyShape& shape)
-    : shape_(shape), encoder_(make_encoder<T>(shape, this->parameters_, this->statistics_)), behind_encoder_(this->parameters_.total()) {}
+    : shape_(shape), encoder_(make_encoder<T>(shape, this->parameters_, this->statistics_)),
+      behind_encoder_(this->parameters_.total()) {}
 
 template <class T>
 void EncodedPolicy<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
@@ -30,8 +31,8 @@ void EncodedPolicy<T>::initialise(const InitOptions& options, T* parameters, T* 
 }
 
 template <class T>
-Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, T* statistics,
-                              T* gradient, T* logits) {
+Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
+                              const T* parameters, T* statistics, T* gradient, T* logits) {
   const size_t size = size_t(batch.size) * shape_.feature;
   std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
   T* dpsi = dpsi_.grow(size);
@@ -39,7 +40,8 @@ Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, con
   if (batch.psi)
     std::copy_n(batch.psi, size, psi_.grow(size));
   else
-    encoder_->forward(parallel, batch.size, batch.observations, parameters, statistics, psi_.grow(size), batch.frozen_statistics);
+    encoder_->forward(parallel, batch.size, batch.observations, parameters, statistics, psi_.grow(size),
+                      batch.frozen_statistics);
   Losses losses = head_step(parallel, batch, weights, parameters, psi_.data(), logits, dpsi, gradient);
   if (!batch.psi) encoder_->backward(parallel, parameters, dpsi, gradient);
   losses.add_up(weights);
@@ -47,7 +49,8 @@ Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, con
 }
 
 template <class T>
-double EncodedPolicy<T>::score_loss(Parallel& parallel, const StepBatch<T>& batch, const T* psi, const T* logits, T* dlogits, T* dpsi) const {
+double EncodedPolicy<T>::score_loss(Parallel& parallel, const StepBatch<T>& batch, const T* psi, const T* logits,
+                                    T* dlogits, T* dpsi) const {
   if (batch.objective) return batch.objective->apply(parallel, batch.size, psi, logits, dlogits, dpsi);
   return policy_loss(parallel, batch.size, shape_.actions, logits, batch.label, dlogits);
 }

@@ -36,8 +36,8 @@ double Mlp<T>::make_input(const T* psi, int env, int task, T* x) const {
 }
 
 template <class T>
-Losses Mlp<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
-                         T* logits, T* dpsi, T* gradient) {
+Losses Mlp<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                         const T* psi, T* logits, T* dpsi, T* gradient) {
   const int n = batch.size, d = shape().feature, actions = shape().actions, in = inputs();
   factor_.resize(n);
   T* x = x_.grow(size_t(n) * in);

@@ -8,12 +8,13 @@
 namespace synpo {
 
 template <class T>
-ModuleNet<T>::ModuleNet(const PolicyShape& shape)
-    : EncodedPolicy<T>(shape) {
+ModuleNet<T>::ModuleNet(const PolicyShape& shape) : EncodedPolicy<T>(shape) {
   for (int task = 0; task < shape.tasks; ++task)
-    task_.each.emplace_back("module.task" + std::to_string(task), shape.feature, shape.head_hidden, shape.seam, this->parameters_);
+    task_.each.emplace_back("module.task" + std::to_string(task), shape.feature, shape.head_hidden, shape.seam,
+                            this->parameters_);
   for (int env = 0; env < shape.envs; ++env)
-    env_.each.emplace_back("module.env" + std::to_string(env), shape.seam, shape.head_hidden, shape.actions, this->parameters_);
+    env_.each.emplace_back("module.env" + std::to_string(env), shape.seam, shape.head_hidden, shape.actions,
+                           this->parameters_);
 }
 
 template <class T>
@@ -26,10 +27,13 @@ template <class T>
 void ModuleNet<T>::Modules::forward(Parallel& parallel, const T* from, const T* parameters, T* to) {
   const int in = each[0].in(), out = each[0].out();
   T* rows = x.grow(groups.members.size() * in);
-  for (size_t j = 0; j < groups.members.size(); ++j) std::copy_n(from + size_t(groups.members[j]) * in, in, rows + j * in);
+  for (size_t j = 0; j < groups.members.size(); ++j)
+    std::copy_n(from + size_t(groups.members[j]) * in, in, rows + j * in);
   for (int g = 0; g < groups.count(); ++g) {
-    const T* y = each[groups.keys[g]].forward(parallel, groups.size(g), rows + size_t(groups.begin[g]) * in, parameters);
-    for (int j = groups.begin[g]; j < groups.begin[g + 1]; ++j, y += out) std::copy_n(y, out, to + size_t(groups.members[j]) * out);
+    const T* y =
+        each[groups.keys[g]].forward(parallel, groups.size(g), rows + size_t(groups.begin[g]) * in, parameters);
+    for (int j = groups.begin[g]; j < groups.begin[g + 1]; ++j, y += out)
+      std::copy_n(y, out, to + size_t(groups.members[j]) * out);
   }
 }
 
@@ -38,10 +42,12 @@ void ModuleNet<T>::Modules::backward(Parallel& parallel, const T* dto, T* dfrom,
   const int in = each[0].in(), out = each[0].out();
   T* dys = dy.grow(groups.members.size() * out);
   T* dxs = dx.grow(groups.members.size() * in);
-  for (size_t j = 0; j < groups.members.size(); ++j) std::copy_n(dto + size_t(groups.members[j]) * out, out, dys + j * out);
+  for (size_t j = 0; j < groups.members.size(); ++j)
+    std::copy_n(dto + size_t(groups.members[j]) * out, out, dys + j * out);
   for (int g = 0; g < groups.count(); ++g) {
     const size_t begin = groups.begin[g];
-    each[groups.keys[g]].backward(parallel, x.data() + begin * in, dys + begin * out, dxs + begin * in, false, parameters, gradient);
+    each[groups.keys[g]].backward(parallel, x.data() + begin * in, dys + begin * out, dxs + begin * in, false,
+                                  parameters, gradient);
   }
   for (size_t j = 0; j < groups.members.size(); ++j) {
     T* to = dfrom + size_t(groups.members[j]) * in;
@@ -50,8 +56,8 @@ void ModuleNet<T>::Modules::backward(Parallel& parallel, const T* dto, T* dfrom,
 }
 
 template <class T>
-Losses ModuleNet<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
-                               T* logits, T* dpsi, T* gradient) {
+Losses ModuleNet<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
+                               const T* parameters, const T* psi, T* logits, T* dpsi, T* gradient) {
   const int n = batch.size;
   const size_t seams = size_t(n) * shape().seam;
   T* seam = seam_.grow(seams);

@@ -1,11 +1,13 @@
-// ModuleNet (Devin et al. 2017): a perceptron for every task and one for every environment, put together where they meet.
+// ModuleNet (Devin et al. 2017): a perceptron for every task and one for every environment, put together where they
+// meet.
 //
-//   scores = module_env(dropout(module_task(psi)));  psi [d] -> hidden -> seam of the task's, seam -> hidden -> actions of the environment's.
+//   scores = module_env(dropout(module_task(psi)));  psi [d] -> hidden -> seam of the task's, seam -> hidden -> actions
+//   of the environment's.
 // It has the imitation loss alone. Samples of a batch are grouped by module.
 #pragma once
 #include "nn/layers/perceptron.h"
-#include "policy/method/encoded_policy.h"
 #include "policy/head/groups.h"
+#include "policy/method/encoded_policy.h"
 
 namespace synpo {
 
@@ -16,8 +18,8 @@ class ModuleNet : public EncodedPolicy<T> {
 
  protected:
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
-  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
-                   T* dpsi, T* gradient) override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                   const T* psi, T* logits, T* dpsi, T* gradient) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
   void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 

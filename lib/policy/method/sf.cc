@@ -41,7 +41,8 @@ void Sf<T>::values(const T* features, const T* w, T* values) const {
 }
 
 template <class T>
-double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi, T* dpsi) const {
+double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi,
+                                  T* dpsi) const {
   const int n = batch.size, width = shape().embedding;
   const size_t row = size_t(shape().actions) * width;
   const auto unknown = std::count(batch.next, batch.next + n, int(StepBatch<T>::kUnknown));
@@ -76,8 +77,8 @@ double Sf<T>::planner_distance(const StepBatch<T>& batch, const T* q, T* dq) con
 }
 
 template <class T>
-Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* feature,
-                        T* logits, T* dfeature, T* gradient) {
+Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                        const T* feature, T* logits, T* dfeature, T* gradient) {
   const int n = batch.size, d = shape().feature, width = shape().embedding, actions = shape().actions, in = inputs();
   const size_t row = size_t(actions) * width;
   T* x = x_.grow(size_t(n) * in);
@@ -97,8 +98,9 @@ Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const Los
   if (shape().sf_loss == SfLoss::kTemporalDifference && !batch.objective) {
     losses.policy = temporal_difference(batch, weights.discount, phi, psi, dpsi);
   } else {
-    losses.policy = shape().sf_loss == SfLoss::kPlannerQ && !batch.objective ? planner_distance(batch, logits, dq)
-                                                        : this->score_loss(parallel, batch, feature, logits, dq, dfeature);
+    losses.policy = shape().sf_loss == SfLoss::kPlannerQ && !batch.objective
+                        ? planner_distance(batch, logits, dq)
+                        : this->score_loss(parallel, batch, feature, logits, dq, dfeature);
     for (int i = 0; i < n; ++i) {
       const T* w = task_.row(batch.task[i]);
       T* dw = task_.gradient_row(batch.task[i]);
@@ -154,7 +156,8 @@ void Sf<T>::infer_head(int size, const T* feature, const int* pair, T* logits) c
     make_input(feature + size_t(i) * d, env, task, x.data() + size_t(i) * in);
   }
   psi_.infer(size, x.data(), psi.data(), scratch);
-  for (int i = 0; i < size; ++i) values(psi.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape().actions);
+  for (int i = 0; i < size; ++i)
+    values(psi.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape().actions);
 }
 
 template class Sf<float>;

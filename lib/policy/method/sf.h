@@ -1,8 +1,9 @@
 // Successor features: a reward that is linear in features, and their discounted sum.
 //
-//   r(s, a) = phi(s, a)^T e_task,   psi(s, a; z) = phi(s, a) + gamma psi(s', a'; z),   Q_z(s, a) = psi(s, a; z)^T e_task
-// phi is a perceptron over the state's feature, psi one over the feature, e_env and e_task; s' and a' are the next state and the
-// expert's action there. The policy takes the action of the highest Q. What psi is learned from: SfLoss.
+//   r(s, a) = phi(s, a)^T e_task,   psi(s, a; z) = phi(s, a) + gamma psi(s', a'; z),   Q_z(s, a) = psi(s, a; z)^T
+//   e_task
+// phi is a perceptron over the state's feature, psi one over the feature, e_env and e_task; s' and a' are the next
+// state and the expert's action there. The policy takes the action of the highest Q. What psi is learned from: SfLoss.
 #pragma once
 #include "nn/layers/perceptron.h"
 #include "policy/head/embedding_table.h"
@@ -17,10 +18,11 @@ class Sf : public EncodedPolicy<T> {
 
   BatchNeeds needs() const override;
   double temperature() const override { return shape().sf_loss == SfLoss::kCrossEntropy ? kTemperature : 0; }
+
  protected:
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
-  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
-                   T* dpsi, T* gradient) override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                   const T* psi, T* logits, T* dpsi, T* gradient) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
   void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 

@@ -13,15 +13,17 @@ constexpr int kRows = 64;  // samples of a shard
 template <class T>
 SynPo<T>::SynPo(const PolicyShape& shape, Context context)
     : EncodedPolicy<T>(shape),
-      env_(context == Context::kTask
-               ? std::optional<EmbeddingTable<T>>()
-               : EmbeddingTable<T>("embedding.env", shape.envs, shape.embedding, shape.normalise_embeddings, this->parameters_)),
+      env_(context == Context::kTask ? std::optional<EmbeddingTable<T>>()
+                                     : EmbeddingTable<T>("embedding.env", shape.envs, shape.embedding,
+                                                         shape.normalise_embeddings, this->parameters_)),
       task_("embedding.task", shape.tasks, shape.embedding, shape.normalise_embeddings, this->parameters_),
       coefficient_{{"alpha", coefficient_inputs(), shape.hidden, shape.basis, this->parameters_},
                    {"beta", coefficient_inputs(), shape.hidden, shape.basis, this->parameters_}},
       form_(shape.actions, shape.feature, shape.basis, shape.action_embedding, this->parameters_),
-      bias_{this->parameters_.add("policy.bias", {shape.actions}), this->parameters_.add("reward.bias", {shape.actions})},
-      f_env_(env_ ? Recogniser<T>("f_env", shape.basis, shape.hidden, *env_, this->parameters_) : std::optional<Recogniser<T>>()),
+      bias_{this->parameters_.add("policy.bias", {shape.actions}),
+            this->parameters_.add("reward.bias", {shape.actions})},
+      f_env_(env_ ? Recogniser<T>("f_env", shape.basis, shape.hidden, *env_, this->parameters_)
+                  : std::optional<Recogniser<T>>()),
       f_task_("f_task", shape.basis, shape.hidden, task_, this->parameters_) {}
 
 template <class T>
@@ -62,7 +64,8 @@ void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* grad
   T* dinput = dpair_input_.grow(size_t(count) * coefficient_inputs());
   T* dcoefficients = dcoefficients_.grow(size_t(count) * shape().basis);
   for (int h = 0; h < kHeads; ++h) {
-    form_.compose_backward(parallel, count, coefficients_[h], dcomposed_[h].data(), parameters, dcoefficients, gradient);
+    form_.compose_backward(parallel, count, coefficients_[h], dcomposed_[h].data(), parameters, dcoefficients,
+                           gradient);
     coefficient_[h].backward(parallel, pair_input_.data(), dcoefficients, dinput, h > 0, parameters, gradient);
   }
   const T* from = dinput;
@@ -74,9 +77,10 @@ void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* grad
 
 // Policy and reward losses: logits, dpsi_ and dcomposed_.
 template <class T>
-Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
-                       T* dpsi, T* gradient) {
-  const int n = batch.size, d = shape().feature, actions = shape().actions, columns = form_.columns(), pairs = int(pairs_.size());
+Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                       const T* psi, T* logits, T* dpsi, T* gradient) {
+  const int n = batch.size, d = shape().feature, actions = shape().actions, columns = form_.columns(),
+            pairs = int(pairs_.size());
   const size_t matrix = form_.matrix_size();
   for (int h = 0; h < kHeads; ++h) {
     q_[h].grow(size_t(n) * columns);
@@ -89,7 +93,8 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
     });
   };
   for_samples([&](int p, size_t i) {
-    for (int h = 0; h < kHeads; ++h) form_.apply(composed_[h].data() + p * matrix, psi + i * d, q_[h].data() + i * columns);
+    for (int h = 0; h < kHeads; ++h)
+      form_.apply(composed_[h].data() + p * matrix, psi + i * d, q_[h].data() + i * columns);
   });
 
   const auto for_rows = [&](auto&& body) {
@@ -105,7 +110,9 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
   T* dlogits = dlogits_.grow(size_t(n) * actions);
   Losses losses;
   losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
-  for_rows([&](int rows, size_t q_at, size_t at) { form_.scores_backward(rows, dlogits + at, parameters, dq_[kPolicy].data() + q_at); });
+  for_rows([&](int rows, size_t q_at, size_t at) {
+    form_.scores_backward(rows, dlogits + at, parameters, dq_[kPolicy].data() + q_at);
+  });
   form_.phi_backward(n, q_[kPolicy].data(), dlogits, gradient);
   for (int i = 0; i < n; ++i) {
     for (int a = 0; a < actions; ++a) gradient[bias_[kPolicy] + a] += dlogits[size_t(i) * actions + a];
@@ -131,8 +138,8 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
 
 // The disentanglement losses. Samples are taken in the order of their labels, so that x is one product an action.
 template <class T>
-void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
-                           T* dpsi, T* gradient, Losses& losses) {
+void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
+                           const T* parameters, const T* psi, T* dpsi, T* gradient, Losses& losses) {
   const int n = batch.size, d = shape().feature, basis = shape().basis;
   const std::vector<int>& order = by_label_.members;
   T* sorted = psi_sorted_.grow(size_t(n) * d);
@@ -153,8 +160,8 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
       parts.push_back({g, {begin, std::min(begin + kRows, by_label_.begin[g + 1])}});
   parallel.run(int(parts.size()), [&](int shard, int) {
     const auto& [group, rows] = parts[shard];
-    gemm(Op::kAsIs, Op::kAsIs, rows.size(), basis, d, sorted + size_t(rows.begin) * d, d, form_.action_matrix(group, parameters), basis,
-         x + size_t(rows.begin) * basis, basis);
+    gemm(Op::kAsIs, Op::kAsIs, rows.size(), basis, d, sorted + size_t(rows.begin) * d, d,
+         form_.action_matrix(group, parameters), basis, x + size_t(rows.begin) * basis, basis);
   });
   truth_.resize(n);
   const auto recognise = [&](Recogniser<T>& f, const int* truth, EmbeddingTable<T>& table, double weight) {
@@ -165,8 +172,8 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
   losses.task = recognise(f_task_, batch.task, task_, weights.task);
   parallel.run(int(parts.size()), [&](int shard, int) {
     const auto& [group, rows] = parts[shard];
-    gemm(Op::kAsIs, Op::kTransposed, rows.size(), d, basis, dx + size_t(rows.begin) * basis, basis, form_.action_matrix(group, parameters),
-         basis, dsorted + size_t(rows.begin) * d, d);
+    gemm(Op::kAsIs, Op::kTransposed, rows.size(), d, basis, dx + size_t(rows.begin) * basis, basis,
+         form_.action_matrix(group, parameters), basis, dsorted + size_t(rows.begin) * d, d);
     for (int j = rows.begin; j < rows.end; ++j)
       for (int c = 0; c < d; ++c) dpsi[size_t(order[j]) * d + c] += dsorted[size_t(j) * d + c];
   });
@@ -179,10 +186,11 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
 }
 
 template <class T>
-Losses SynPo<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi,
-                           T* logits, T* dpsi, T* gradient) {
+Losses SynPo<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
+                           const T* parameters, const T* psi, T* logits, T* dpsi, T* gradient) {
   const int tasks = shape().tasks;
-  by_pair_.sort(batch.size, (env_ ? shape().envs : 1) * tasks, [&](int i) { return (env_ ? batch.env[i] * tasks : 0) + batch.task[i]; });
+  by_pair_.sort(batch.size, (env_ ? shape().envs : 1) * tasks,
+                [&](int i) { return (env_ ? batch.env[i] * tasks : 0) + batch.task[i]; });
   by_label_.sort(batch.size, shape().actions, [&](int i) { return batch.label[i]; });
   pairs_.clear();
   for (const int key : by_pair_.keys) pairs_.emplace_back(key / tasks, key % tasks);
@@ -210,7 +218,8 @@ void SynPo<T>::infer_head(int size, const T* psi, const int* pair, T* logits) co
   const int d = shape().feature, columns = form_.columns();
   std::vector<T> q(size_t(size) * columns);
   for (int i = 0; i < size; ++i)
-    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi + size_t(i) * d, q.data() + size_t(i) * columns);
+    form_.apply(composed_[kPolicy].data() + pair[i] * form_.matrix_size(), psi + size_t(i) * d,
+                q.data() + size_t(i) * columns);
   form_.infer(size, q.data(), logits);
   kernels<T>().add_bias(size, shape().actions, policy_bias_.data(), false, logits);
 }

@@ -2,19 +2,21 @@
 //
 //   U(z) = sum_k alpha_k(z) Theta_k,  V(z) = sum_k beta_k(z) Theta_k,  z = (env, task)
 //   pi_z(a|s) = softmax_a(psi(s)^T U(z) phi(a) + b_a),   r_z(s, a) = psi(s)^T V(z) phi(a) + c_a
-//   x(s, a)_k = psi(s)^T Theta_k phi(a);   the environment is told from f_env(x)^T e_env, the task from f_task(x)^T e_task
+//   x(s, a)_k = psi(s)^T Theta_k phi(a);   the environment is told from f_env(x)^T e_env, the task from f_task(x)^T
+//   e_task
 //
-// alpha, beta, f_env and f_task are dense layers with one hidden ReLU layer (Sections 4.1 and 4.3); theta and phi: bilinear_form.h.
-// The multi-task baseline (MTL) is the same without the environment: z = task, and the environment's loss and embeddings are left out.
+// alpha, beta, f_env and f_task are dense layers with one hidden ReLU layer (Sections 4.1 and 4.3); theta and phi:
+// bilinear_form.h. The multi-task baseline (MTL) is the same without the environment: z = task, and the environment's
+// loss and embeddings are left out.
 #pragma once
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "policy/head/bilinear_form.h"
-#include "policy/method/encoded_policy.h"
 #include "policy/head/groups.h"
 #include "policy/head/recogniser.h"
+#include "policy/method/encoded_policy.h"
 
 namespace synpo {
 
@@ -26,8 +28,8 @@ class SynPo : public EncodedPolicy<T> {
 
  protected:
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
-  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits,
-                   T* dpsi, T* gradient) override;
+  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                   const T* psi, T* logits, T* dpsi, T* gradient) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
   void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
@@ -38,10 +40,10 @@ class SynPo : public EncodedPolicy<T> {
   void use_embeddings(const T* parameters);
   void compose(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs);
   void compose_backward(Parallel& parallel, const T* parameters, T* gradient);
-  Losses heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* logits, T* dpsi,
-               T* gradient);
-  void disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters, const T* psi, T* dpsi,
-                   T* gradient, Losses& losses);
+  Losses heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+               const T* psi, T* logits, T* dpsi, T* gradient);
+  void disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+                   const T* psi, T* dpsi, T* gradient, Losses& losses);
 
   std::optional<EmbeddingTable<T>> env_;
   EmbeddingTable<T> task_;

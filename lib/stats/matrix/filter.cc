@@ -16,7 +16,9 @@ bool holds(const std::set<Value>& set, const Value& value) {
 
 std::string shown(const std::string& name) { return quoted(name); }
 std::string shown(uint64_t seed) { return std::to_string(seed); }
-std::string shown(const std::pair<std::string, std::string>& pair) { return quoted(pair.first) + ", " + quoted(pair.second); }
+std::string shown(const std::pair<std::string, std::string>& pair) {
+  return quoted(pair.first) + ", " + quoted(pair.second);
+}
 
 template <class Value, class Of>
 void check_names(const std::set<Value>& named, const Matrix& matrix, const char* what, Of of) {
@@ -30,8 +32,8 @@ void check_names(const std::set<Value>& named, const Matrix& matrix, const char*
 }  // namespace
 
 bool RowFilter::fits(const MatrixRow& row) const {
-  return holds(envs, row.env) && holds(tasks, row.task) && holds(methods, row.method) && holds(parts, row.part) && holds(seeds, row.seed) &&
-         holds(pairs, {row.env, row.task}) && (row.seen ? seen : unseen);
+  return holds(envs, row.env) && holds(tasks, row.task) && holds(methods, row.method) && holds(parts, row.part) &&
+         holds(seeds, row.seed) && holds(pairs, {row.env, row.task}) && (row.seen ? seen : unseen);
 }
 
 Matrix filter_rows(const Matrix& matrix, const RowFilter& filter) {
@@ -56,14 +58,15 @@ bool is_wide_measure(const std::string& name) {
          std::any_of(kinds.begin(), kinds.end(), [&](const MeasureKind& kind) { return name == kind.name; });
 }
 
-void write_wide(Output& output, const Matrix& matrix, const std::vector<std::string>& envs, const std::vector<std::string>& tasks,
-                const std::string& measure) {
+void write_wide(Output& output, const Matrix& matrix, const std::vector<std::string>& envs,
+                const std::vector<std::string>& tasks, const std::string& measure) {
   struct Cell {
     Tally tally;
     bool seen;
   };
   std::unordered_map<std::string, Cell> cells;
-  for (const MatrixRow& row : matrix.rows) cells.try_emplace(row.env + '\t' + row.task, Cell{{}, row.seen}).first->second.tally.add(row);
+  for (const MatrixRow& row : matrix.rows)
+    cells.try_emplace(row.env + '\t' + row.task, Cell{{}, row.seen}).first->second.tally.add(row);
   TsvWriter writer(output);
   writer.text("task");
   for (const std::string& env : envs) writer.text(env);

@@ -20,13 +20,14 @@ struct RowFilter {
   bool fits(const MatrixRow& row) const;
 };
 
-// Throws kData when a name of the filter is nowhere in the matrix, which would be a misspelling, or when no row is left.
+// Throws kData when a name of the filter is nowhere in the matrix, which would be a misspelling, or when no row is
+// left.
 Matrix filter_rows(const Matrix& matrix, const RowFilter& filter);
 
-// A column `task`, then a column per environment, in the orders given; the value of each pair over all runs together, NA where there
-// is none. `measure` is one of measure_kinds(), or episodes, successes, seen.
+// A column `task`, then a column per environment, in the orders given; the value of each pair over all runs together,
+// NA where there is none. `measure` is one of measure_kinds(), or episodes, successes, seen.
 bool is_wide_measure(const std::string& name);
-void write_wide(Output& output, const Matrix& matrix, const std::vector<std::string>& envs, const std::vector<std::string>& tasks,
-                const std::string& measure);
+void write_wide(Output& output, const Matrix& matrix, const std::vector<std::string>& envs,
+                const std::vector<std::string>& tasks, const std::string& measure);
 
 }  // namespace synpo

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "stats/matrix/heat_table.h"
 #include "base/text.h"
+#include "stats/matrix/heat_table.h"
 
 namespace synpo {
 namespace {
@@ -133,8 +133,11 @@ void sort_by_success(Names& names, const std::vector<Line>& lines, HeatOrder by,
 }  // namespace
 
 HeatOrder find_order(const std::string& name) {
-  static const std::map<std::string, HeatOrder> orders = {{"paper", HeatOrder::kPaper}, {"given", HeatOrder::kGiven},
-      {"natural", HeatOrder::kNatural}, {"mean", HeatOrder::kMean}, {"cluster", HeatOrder::kCluster}};
+  static const std::map<std::string, HeatOrder> orders = {{"paper", HeatOrder::kPaper},
+                                                          {"given", HeatOrder::kGiven},
+                                                          {"natural", HeatOrder::kNatural},
+                                                          {"mean", HeatOrder::kMean},
+                                                          {"cluster", HeatOrder::kCluster}};
   const auto found = orders.find(name);
   if (found == orders.end()) throw std::invalid_argument("expected paper, given, natural, mean or cluster");
   return found->second;
@@ -145,9 +148,10 @@ HeatFigure arrange(std::vector<HeatPanel> panels, const Names& paper_tasks, Heat
   unite_groups(panels, &HeatTable::parts, &HeatCell::part);
   Names tasks = united(panels, &HeatTable::tasks), envs = united(panels, &HeatTable::envs);
   if (tasks.size() * envs.size() * panels.size() > kMostHeatCells)
-    fail(Exit::kData, panels.size(), " panels of ", tasks.size(), " tasks x ", envs.size(), " environments: expected at most ",
-         kMostHeatCells, " cells");
-  if (task_order != HeatOrder::kGiven) tasks = task_order == HeatOrder::kNatural ? naturally(tasks) : as_in_paper(tasks, paper_tasks);
+    fail(Exit::kData, panels.size(), " panels of ", tasks.size(), " tasks x ", envs.size(),
+         " environments: expected at most ", kMostHeatCells, " cells");
+  if (task_order != HeatOrder::kGiven)
+    tasks = task_order == HeatOrder::kNatural ? naturally(tasks) : as_in_paper(tasks, paper_tasks);
   if (env_order != HeatOrder::kGiven) envs = naturally(envs);
   lay_out_cells(panels, tasks, envs);
 

@@ -42,7 +42,8 @@ std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTabl
   const int64_t window = rows.front()->window;
   if (window != 1) add(window == 0 ? "blind" : concat("window radius ", window));
   if (!runs.empty()) add(counted(int64_t(runs.size()), "run"));
-  if (most > 0) add(fewest == most ? counted(most, "episode") + " a pair" : concat(fewest, " to ", most, " episodes a pair"));
+  if (most > 0)
+    add(fewest == most ? counted(most, "episode") + " a pair" : concat(fewest, " to ", most, " episodes a pair"));
   return out;
 }
 
@@ -70,7 +71,8 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
     if (!row.part.empty()) part_names.insert(row.part);
   }
   if (rows.empty()) fail(Exit::kData, "no row", method.empty() ? "" : " of the method " + quoted(method));
-  if (methods.size() > 1) fail(Exit::kData, "rows of several methods (", joined(methods), "): choose one with --method");
+  if (methods.size() > 1)
+    fail(Exit::kData, "rows of several methods (", joined(methods), "): choose one with --method");
   if (worlds.size() > 1) {
     std::set<std::string> names;
     for (const auto& [world, window] : worlds) names.insert(concat(world, " with window ", window));
@@ -78,9 +80,11 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   }
   if (by_part && part_names.empty()) fail(Exit::kData, "no column part to colour by");
   if (const size_t side = std::max(tasks.list.size(), envs.list.size()); side > kMostHeatNames)
-    fail(Exit::kData, side, tasks.list.size() == side ? " tasks" : " environments", ": expected at most ", kMostHeatNames);
+    fail(Exit::kData, side, tasks.list.size() == side ? " tasks" : " environments", ": expected at most ",
+         kMostHeatNames);
   if (envs.list.size() * tasks.list.size() > kMostHeatCells)
-    fail(Exit::kData, tasks.list.size(), " tasks x ", envs.list.size(), " environments: expected at most ", kMostHeatCells, " cells");
+    fail(Exit::kData, tasks.list.size(), " tasks x ", envs.list.size(), " environments: expected at most ",
+         kMostHeatCells, " cells");
 
   HeatTable table;
   table.envs = envs.list;

@@ -37,10 +37,9 @@ struct HeatTable {
   const HeatCell& at(size_t task, size_t env) const { return cells[task * envs.size() + env]; }
 };
 
-// Sums the rows of each pair over runs and shards. Names come as they appear first. `method` empty: all rows. Throws kData when the
-// rows left are of several methods or worlds, when a pair is seen in one row and unseen in another (or in two parts), when no row is
-// left, for `by_part` without parts, and for more names or cells than the
-// above.
+// Sums the rows of each pair over runs and shards. Names come as they appear first. `method` empty: all rows. Throws
+// kData when the rows left are of several methods or worlds, when a pair is seen in one row and unseen in another (or
+// in two parts), when no row is left, for `by_part` without parts, and for more names or cells than the above.
 HeatTable pool_matrix(const Matrix& matrix, const std::string& method = "", bool by_part = false);
 
 // How tasks or environments are ordered.
@@ -65,14 +64,15 @@ struct HeatFigure {
 };
 
 // `paper_tasks`: those of GridWorld in the order of Figure 6, for HeatOrder::kPaper.
-// Gives all panels the tasks and environments of any; pairs that a panel lacks are empty in it. Means and distances are over all panels,
-// of seen and unseen pairs alike. The distance of two tasks is the root of the mean squared difference of their success rates where
-// both were evaluated, 1 where none is; so with environments. What is equal keeps the order of kPaper. Throws kData for kCluster of
-// more than 2000 names, and for more than kMostHeatCells.
-HeatFigure arrange(std::vector<HeatPanel> panels, const std::vector<std::string>& paper_tasks, HeatOrder tasks = HeatOrder::kPaper,
-                   HeatOrder envs = HeatOrder::kPaper);
+// Gives all panels the tasks and environments of any; pairs that a panel lacks are empty in it. Means and distances are
+// over all panels, of seen and unseen pairs alike. The distance of two tasks is the root of the mean squared difference
+// of their success rates where both were evaluated, 1 where none is; so with environments. What is equal keeps the
+// order of kPaper. Throws kData for kCluster of more than 2000 names, and for more than kMostHeatCells.
+HeatFigure arrange(std::vector<HeatPanel> panels, const std::vector<std::string>& paper_tasks,
+                   HeatOrder tasks = HeatOrder::kPaper, HeatOrder envs = HeatOrder::kPaper);
 
-// The mean of each task and each environment: over all its pairs, then over those of each group where there are several.
+// The mean of each task and each environment: over all its pairs, then over those of each group where there are
+// several.
 struct HeatMargin {
   std::string name;
   int group;                          // -1: all pairs

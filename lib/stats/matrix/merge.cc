@@ -69,7 +69,8 @@ class Merger {
     const std::string run = run_key(placed.row);
     const auto [known, fresh_run] = first_of_run_.try_emplace(run, placed);
     if (!fresh_run) check_run(known->second, placed);
-    const auto [it, fresh_pair] = pair_of_.try_emplace(run + '\t' + placed.row.env + '\t' + placed.row.task, pairs_.size());
+    const auto [it, fresh_pair] =
+        pair_of_.try_emplace(run + '\t' + placed.row.env + '\t' + placed.row.task, pairs_.size());
     if (fresh_pair)
       pairs_.emplace_back();
     else
@@ -82,8 +83,8 @@ class Merger {
   template <class Value>
   void same(const Placed& a, const Placed& b, const char* what, const Value& in_a, const Value& in_b) const {
     if (in_a == in_b) return;
-    fail(Exit::kData, place(b), ": found ", what, " ", quoted(concat(in_b)), ", expected ", quoted(concat(in_a)), " as in ", place(a),
-         ", a row of the same run");
+    fail(Exit::kData, place(b), ": found ", what, " ", quoted(concat(in_b)), ", expected ", quoted(concat(in_a)),
+         " as in ", place(a), ", a row of the same run");
   }
 
   void check_run(const Placed& a, const Placed& b) const {
@@ -104,18 +105,20 @@ class Merger {
     const auto episodes = [](const MatrixRow& row) {
       return concat("episodes ", row.first_episode, " to ", row.first_episode + row.episodes - 1);
     };
-    fail(Exit::kData, place(a), " and ", place(b), " count episodes twice: ", episodes(a.row), " and ", episodes(b.row), " of pair ",
-         quoted(a.row.env), ", ", quoted(a.row.task), ", eval_seed ", a.row.eval_seed,
+    fail(Exit::kData, place(a), " and ", place(b), " count episodes twice: ", episodes(a.row), " and ", episodes(b.row),
+         " of pair ", quoted(a.row.env), ", ", quoted(a.row.task), ", eval_seed ", a.row.eval_seed,
          a.row.run.empty() ? " (no run is named: give different runs a column run or seed)" : ", of the same run");
   }
 
   // Whether the failures that one counts would seem to be those of the other, too.
-  static bool hides_failures(const MatrixRow& one, const MatrixRow& other) { return one.wrong + one.timeouts > 0 && !other.knows_failures(); }
+  static bool hides_failures(const MatrixRow& one, const MatrixRow& other) {
+    return one.wrong + one.timeouts > 0 && !other.knows_failures();
+  }
 
   static bool follows(const MatrixRow& before, const MatrixRow& row) {
-    return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode && before.extra == row.extra &&
-           before.knows_length() == row.knows_length() && before.knows_reward() == row.knows_reward() && !hides_failures(before, row) &&
-           !hides_failures(row, before);
+    return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode &&
+           before.extra == row.extra && before.knows_length() == row.knows_length() &&
+           before.knows_reward() == row.knows_reward() && !hides_failures(before, row) && !hides_failures(row, before);
   }
 
   std::vector<MatrixSource>& sources_;

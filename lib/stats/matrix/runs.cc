@@ -58,15 +58,16 @@ std::vector<Group> gather(const Matrix& matrix) {
     const auto [at_run, fresh_run] = run_at.try_emplace(run_name, Place{at_group->second, group.runs.size()});
     if (fresh_run) group.runs.push_back({row.seed, row.updates, {}});
     Run& run = group.runs[at_run->second.run];
-    const auto [at_pair, fresh_pair] = pair_at.try_emplace(run_name + '\n' + row.env + '\t' + row.task, run.pairs.size());
+    const auto [at_pair, fresh_pair] =
+        pair_at.try_emplace(run_name + '\n' + row.env + '\t' + row.task, run.pairs.size());
     if (fresh_pair) run.pairs.push_back({row.env, row.task, row.seen, row.part, {}});
     run.pairs[at_pair->second].tally.add(row);
   }
   return groups;
 }
 
-std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates, int64_t most_updates,
-                    const std::vector<uint64_t>& seeds) {
+std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates,
+                    int64_t most_updates, const std::vector<uint64_t>& seeds) {
   std::string text = method.empty() ? "unnamed method" : method;
   if (!world.empty()) text += concat(" on ", world, ", window ", window);
   if (most_updates > 0) {

@@ -41,25 +41,26 @@ struct Group {
   std::vector<uint64_t> seeds() const;
 };
 
-// Groups in the order of their first row, and so with runs and pairs. Rows are taken as they are: merge_matrices first keeps double
-// counting out.
+// Groups in the order of their first row, and so with runs and pairs. Rows are taken as they are: merge_matrices first
+// keeps double counting out.
 std::vector<Group> gather(const Matrix& matrix);
 
 // "synpo on gridworld, window 1, 20000 updates: 3 runs (seeds 1 2 3)"
 std::string heading(const Group& group);
-std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates, int64_t most_updates,
-                    const std::vector<uint64_t>& seeds);
+std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates,
+                    int64_t most_updates, const std::vector<uint64_t>& seeds);
 
 // The subsets of pairs that have a name: seen, unseen, all, P, Q, rest.
 bool is_subset(const std::string& name);
 bool belongs(const PairTally& pair, const std::string& subset);
 
-// Something per episode. NaN where the matrix does not say it of all of them: a column missing in one made by hand is 0 throughout.
+// Something per episode. NaN where the matrix does not say it of all of them: a column missing in one made by hand is 0
+// throughout.
 struct MeasureKind {
   const char* name;
   double (*value)(const Tally&);
-  bool rate;               // of k in n; shown in per cent
-  int digits;              // behind the point, as shown
+  bool rate;                       // of k in n; shown in per cent
+  int digits;                      // behind the point, as shown
   int64_t (*count)(const Tally&);  // k of a rate
   double scale() const { return rate ? 100 : 1; }
 };

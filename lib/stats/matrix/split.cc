@@ -22,12 +22,14 @@ void shuffle(std::vector<T>& items, Random& random) {
   for (size_t i = items.size(); i > 1; --i) std::swap(items[i - 1], items[random.below(uint32_t(i))]);
 }
 
-// Draws the cells of a table in layers. A layer has exactly one cell in every line of the longer side and, in every line of the
-// shorter one, a fair share of that line's open cells: their number over the number of layers left, rounded down or up. So k layers
-// cover every line k times. A bipartite graph can always be cut into such layers (de Werra 1971), hence none gets stuck.
+// Draws the cells of a table in layers. A layer has exactly one cell in every line of the longer side and, in every
+// line of the shorter one, a fair share of that line's open cells: their number over the number of layers left, rounded
+// down or up. So k layers cover every line k times. A bipartite graph can always be cut into such layers (de Werra
+// 1971), hence none gets stuck.
 class Layers {
  public:
-  Layers(int longer, int shorter) : longer_(longer), shorter_(shorter), open_(shorter, longer), used_(size_t(longer) * shorter, 0) {}
+  Layers(int longer, int shorter)
+      : longer_(longer), shorter_(shorter), open_(shorter, longer), used_(size_t(longer) * shorter, 0) {}
 
   // The next layer's cells in random order, as (line of the longer side, line of the shorter side).
   std::vector<std::pair<int, int>> next(Random& random) {
@@ -96,7 +98,7 @@ class Layers {
   }
 
   int longer_, shorter_, drawn_ = 0;
-  std::vector<int> open_;                 // unused cells of a line of the shorter side
+  std::vector<int> open_;  // unused cells of a line of the shorter side
   std::vector<char> used_;
   std::vector<std::vector<int>> choices_, holders_;
   std::vector<int> room_;
@@ -104,7 +106,8 @@ class Layers {
 };
 
 // All cells of a table in the order in which they become seen: `cover` layers, then the others in random order.
-std::vector<Cell> seen_order(const std::vector<int>& envs, const std::vector<int>& tasks, int64_t cover, uint64_t seed) {
+std::vector<Cell> seen_order(const std::vector<int>& envs, const std::vector<int>& tasks, int64_t cover,
+                             uint64_t seed) {
   std::vector<Cell> order;
   if (envs.empty() || tasks.empty()) return order;
   const bool more_envs = envs.size() >= tasks.size();
@@ -138,7 +141,8 @@ std::vector<char> draw_seen(const SplitPlan& plan, int envs, int tasks, int64_t 
   for (const auto& [env_name, task_name] : plan.singles) {
     const int env = position(plan.envs, env_name, "environment"), task = position(plan.tasks, task_name, "task");
     if (!single_envs.insert(env).second || !single_tasks.insert(task).second)
-      fail(Exit::kUsage, "--single ", env_name, ",", task_name, ": its environment or its task has another single pair already");
+      fail(Exit::kUsage, "--single ", env_name, ",", task_name,
+           ": its environment or its task has another single pair already");
     seen[size_t(env) * tasks + task] = 1;
   }
   std::vector<int> free_envs, free_tasks;
@@ -152,15 +156,17 @@ std::vector<char> draw_seen(const SplitPlan& plan, int envs, int tasks, int64_t 
   const int64_t shorter = int64_t(std::min(free_envs.size(), free_tasks.size()));
   const int64_t most = singles + longer * shorter;
   if (count < std::max<int64_t>(singles, 1) || count > most)
-    fail(Exit::kUsage, "cannot have ", count, " seen pairs: ", envs, " x ", tasks, " pairs", singles ? " with these single ones" : "",
-         " allow ", std::max<int64_t>(singles, 1), " to ", most);
+    fail(Exit::kUsage, "cannot have ", count, " seen pairs: ", envs, " x ", tasks, " pairs",
+         singles ? " with these single ones" : "", " allow ", std::max<int64_t>(singles, 1), " to ", most);
   if (plan.cover > shorter)
-    fail(Exit::kUsage, "cannot cover every environment and task ", plan.cover, " times: at most ", shorter, " times is possible");
+    fail(Exit::kUsage, "cannot cover every environment and task ", plan.cover, " times: at most ", shorter,
+         " times is possible");
   if (plan.cover > 0 && count < singles + plan.cover * longer)
-    fail(Exit::kUsage, "cannot cover every environment and task ", plan.cover, " times with ", count, " seen pairs: it takes ",
-         singles + plan.cover * longer);
+    fail(Exit::kUsage, "cannot cover every environment and task ", plan.cover, " times with ", count,
+         " seen pairs: it takes ", singles + plan.cover * longer);
 
-  const std::vector<Cell> order = seen_order(free_envs, free_tasks, plan.cover < 0 ? kSplitCover : plan.cover, plan.seed);
+  const std::vector<Cell> order =
+      seen_order(free_envs, free_tasks, plan.cover < 0 ? kSplitCover : plan.cover, plan.seed);
   for (int64_t i = 0; i < count - singles; ++i) seen[size_t(order[i].env) * tasks + order[i].task] = 1;
   return seen;
 }
@@ -178,7 +184,8 @@ std::vector<SplitPair> split_pairs(const SplitPlan& plan) {
   check_names(plan.envs, "environment");
   check_names(plan.tasks, "task");
   const int envs = int(plan.envs.size()), tasks = int(plan.tasks.size());
-  if (int64_t{envs} * tasks > kMaxPairs) fail(Exit::kUsage, "split: ", envs, " x ", tasks, " pairs, at most ", kMaxPairs);
+  if (int64_t{envs} * tasks > kMaxPairs)
+    fail(Exit::kUsage, "split: ", envs, " x ", tasks, " pairs, at most ", kMaxPairs);
   const bool parts = plan.setting != 1;
   if (parts && !plan.singles.empty()) fail(Exit::kUsage, "single pairs belong to setting 1");
   if (!parts && (plan.p_envs >= 0 || plan.p_tasks >= 0)) fail(Exit::kUsage, "setting 1 has no part P");
@@ -186,10 +193,11 @@ std::vector<SplitPair> split_pairs(const SplitPlan& plan) {
   const int64_t p_envs = !parts ? envs : plan.p_envs < 0 ? (envs + 1) / 2 : plan.p_envs;
   const int64_t p_tasks = !parts ? tasks : plan.p_tasks < 0 ? (tasks + 1) / 2 : plan.p_tasks;
   if (parts && (p_envs < 1 || p_envs >= envs || p_tasks < 1 || p_tasks >= tasks))
-    fail(Exit::kUsage, "part P of ", p_envs, " environments and ", p_tasks, " tasks, expected at least 1 and fewer than the ", envs,
-         " and ", tasks, " there are");
+    fail(Exit::kUsage, "part P of ", p_envs, " environments and ", p_tasks,
+         " tasks, expected at least 1 and fewer than the ", envs, " and ", tasks, " there are");
   const double ratio = plan.ratio > 0 ? plan.ratio : parts ? 1 : kSeenRatio;
-  const int64_t count = plan.seen >= 0 ? plan.seen : std::max<int64_t>(1, std::llround(ratio * double(p_envs * p_tasks)));
+  const int64_t count =
+      plan.seen >= 0 ? plan.seen : std::max<int64_t>(1, std::llround(ratio * double(p_envs * p_tasks)));
   const std::vector<char> seen = draw_seen(plan, int(p_envs), int(p_tasks), count);
 
   std::vector<SplitPair> pairs;
@@ -221,17 +229,20 @@ std::vector<std::string> split_names(const std::string& list) {
   return names;
 }
 
-std::vector<std::string> choose_names(const std::string& option, const std::string& chosen, const std::vector<std::string>& names) {
+std::vector<std::string> choose_names(const std::string& option, const std::string& chosen,
+                                      const std::vector<std::string>& names) {
   if (chosen.empty()) return names;
   if (chosen.find_first_not_of("0123456789") == std::string::npos) {
     const size_t count = chosen.size() > 7 ? 0 : std::stoul(chosen);
-    if (count < 1 || count > names.size()) fail(Exit::kUsage, option, " ", chosen, ": expected 1 to ", names.size(), ", or names");
+    if (count < 1 || count > names.size())
+      fail(Exit::kUsage, option, " ", chosen, ": expected 1 to ", names.size(), ", or names");
     return {names.begin(), names.begin() + std::ptrdiff_t(count)};
   }
   const std::vector<std::string> list = split_names(chosen);
   for (const std::string& name : list)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      fail(Exit::kUsage, option, ": there is no ", quoted(name), ", expected names such as ", names.front(), " or a count");
+      fail(Exit::kUsage, option, ": there is no ", quoted(name), ", expected names such as ", names.front(),
+           " or a count");
   return list;
 }
 

@@ -22,10 +22,10 @@ struct SplitPlan {
   int64_t cover = -1;
   // Each the only seen pair of its environment and of its task (Figure 6); cover does not apply to those two.
   std::vector<std::pair<std::string, std::string>> singles;
-  // 1: no parts. In settings 2 and 3 the first p_envs environments and p_tasks tasks (half by default, rounded up) make P, on which
-  // everything is trained. Setting 2: Q is the upper right and the lower left quadrant, new environments with tasks of P and
-  // environments of P with new tasks. Setting 3: Q is the lower right quadrant, both new. Other pairs are "rest".
-  // Seen are the drawn pairs of P and all of Q, on which the new embeddings are trained.
+  // 1: no parts. In settings 2 and 3 the first p_envs environments and p_tasks tasks (half by default, rounded up) make
+  // P, on which everything is trained. Setting 2: Q is the upper right and the lower left quadrant, new environments
+  // with tasks of P and environments of P with new tasks. Setting 3: Q is the lower right quadrant, both new. Other
+  // pairs are "rest". Seen are the drawn pairs of P and all of Q, on which the new embeddings are trained.
   int setting = 1;
   int64_t p_envs = -1, p_tasks = -1;
 };
@@ -36,16 +36,17 @@ struct SplitPair {
   std::string part;  // P, Q or rest; empty in setting 1
 };
 
-// All pairs, environment by environment. The same plan gives the same split. The seen pairs are the first of one order that depends
-// on names' number, seed, cover and singles only, so a smaller count gives a subset of a larger one. Throws kUsage when the plan
-// cannot be met.
+// All pairs, environment by environment. The same plan gives the same split. The seen pairs are the first of one order
+// that depends on names' number, seed, cover and singles only, so a smaller count gives a subset of a larger one.
+// Throws kUsage when the plan cannot be met.
 std::vector<SplitPair> split_pairs(const SplitPlan& plan);
 
 // The parts between commas; "" is one empty name.
 std::vector<std::string> split_names(const std::string& list);
 
-// What the option `option` chooses among `names`: all of them (""), the first so many ("5"), or those listed ("map1,map7"), in the
-// order of the list. Throws kUsage for a name that is none of them.
-std::vector<std::string> choose_names(const std::string& option, const std::string& chosen, const std::vector<std::string>& names);
+// What the option `option` chooses among `names`: all of them (""), the first so many ("5"), or those listed
+// ("map1,map7"), in the order of the list. Throws kUsage for a name that is none of them.
+std::vector<std::string> choose_names(const std::string& option, const std::string& chosen,
+                                      const std::vector<std::string>& names);
 
 }  // namespace synpo

@@ -60,7 +60,8 @@ std::pair<Matrix, Matrix> common_rows(const Matrix& a, const Matrix& b, bool any
 Group only_group(const MatrixSource& source) {
   std::vector<Group> groups = gather(source.matrix);
   if (groups.size() > 1)
-    fail(Exit::kData, source.name, ": rows of several methods, worlds or windows: choose with synpo-matrix filter what is to be compared");
+    fail(Exit::kData, source.name,
+         ": rows of several methods, worlds or windows: choose with synpo-matrix filter what is to be compared");
   return std::move(groups[0]);
 }
 
@@ -110,7 +111,8 @@ SubsetChange change_of(const std::string& name, const Paired& paired, size_t run
 Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start, const BootstrapPlan& plan) {
   const Group all_a = only_group(a), all_b = only_group(b);
   if (all_a.world != all_b.world)
-    fail(Exit::kData, b.name, ": found world ", quoted(all_b.world), ", expected ", quoted(all_a.world), " as in ", a.name);
+    fail(Exit::kData, b.name, ": found world ", quoted(all_b.world), ", expected ", quoted(all_a.world), " as in ",
+         a.name);
   Comparison result;
   const auto [part_a, part_b] = common_rows(a.matrix, b.matrix, any_start, result);
   if (part_a.rows.empty() || part_b.rows.empty())
@@ -133,7 +135,9 @@ Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start,
     std::sort(sorted.begin(), sorted.end());
     std::vector<uint32_t> number;
     for (size_t r = 0; r < group.runs.size(); ++r)
-      number.push_back(result.matched ? uint32_t(std::lower_bound(sorted.begin(), sorted.end(), group.runs[r].seed) - sorted.begin()) : r);
+      number.push_back(
+          result.matched ? uint32_t(std::lower_bound(sorted.begin(), sorted.end(), group.runs[r].seed) - sorted.begin())
+                         : r);
     return number;
   };
   Paired paired;
@@ -147,8 +151,8 @@ Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start,
         std::string& part = paired.pairs[at->second].part;
         if (part.empty()) part = pair.part;
         if (!pair.part.empty() && pair.part != part)
-          fail(Exit::kData, a.name, " and ", b.name, ": pair ", quoted(pair.env), ", ", quoted(pair.task), " is in part ", quoted(part), " and in ",
-               quoted(pair.part));
+          fail(Exit::kData, a.name, " and ", b.name, ": pair ", quoted(pair.env), ", ", quoted(pair.task),
+               " is in part ", quoted(part), " and in ", quoted(pair.part));
         paired.a.resize(paired.pairs.size());
         paired.b.resize(paired.pairs.size());
         values[at->second].push_back({number[r], double(pair.tally.successes) / double(pair.tally.episodes)});
@@ -166,8 +170,9 @@ Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start,
     if (subset.pairs > 0) result.subsets.push_back(subset);
   }
   result.pairs = std::move(paired.pairs);
-  std::stable_sort(result.pairs.begin(), result.pairs.end(),
-                   [](const PairChange& x, const PairChange& y) { return std::abs(x.change()) > std::abs(y.change()); });
+  std::stable_sort(result.pairs.begin(), result.pairs.end(), [](const PairChange& x, const PairChange& y) {
+    return std::abs(x.change()) > std::abs(y.change());
+  });
   return result;
 }
 

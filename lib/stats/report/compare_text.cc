@@ -34,14 +34,17 @@ std::string left_out(const Comparison& c) {
 
 std::string comparison_text(const Comparison& c, size_t most) {
   std::string text = "A: " + c.heading_a + "\nB: " + c.heading_b + "\n\n";
-  std::vector<std::vector<std::string>> rows = {{"", "pairs", "A %", "B %", "B - A", "95 % interval", "better", "alike", "worse"}};
+  std::vector<std::vector<std::string>> rows = {
+      {"", "pairs", "A %", "B %", "B - A", "95 % interval", "better", "alike", "worse"}};
   for (const SubsetChange& s : c.subsets)
-    rows.push_back({s.name, std::to_string(s.pairs), percent(s.mean_a), percent(s.mean_b), points(s.change), points_range(s.interval),
-                    std::to_string(s.better), std::to_string(s.alike), std::to_string(s.worse)});
+    rows.push_back({s.name, std::to_string(s.pairs), percent(s.mean_a), percent(s.mean_b), points(s.change),
+                    points_range(s.interval), std::to_string(s.better), std::to_string(s.alike),
+                    std::to_string(s.worse)});
   text += table_text(rows) + '\n';
   text += "A, B: success, every pair alike, mean over runs; B - A in points of per cent; better: pairs where B is.\n";
   const bool one_each = c.runs_a == 1 && c.runs_b == 1;
-  text += concat("Interval: bootstrap over ", one_each ? "pairs" : "runs and pairs", ", ", c.plan.samples, " samples, seed ", c.plan.seed);
+  text += concat("Interval: bootstrap over ", one_each ? "pairs" : "runs and pairs", ", ", c.plan.samples,
+                 " samples, seed ", c.plan.seed);
   if (one_each)
     text += "; one run each, so what other seeds would do is not in it.\n";
   else
@@ -54,8 +57,8 @@ std::string comparison_text(const Comparison& c, size_t most) {
   rows = {{"env", "task", "", "A", "B", "B - A", "95 % interval"}};
   for (size_t i = 0; i < c.pairs.size() && i < most; ++i) {
     const PairChange& p = c.pairs[i];
-    rows.push_back({p.env, p.task, p.seen ? "seen" : "unseen", concat(p.k_a, " of ", p.n_a), concat(p.k_b, " of ", p.n_b),
-                    points(p.change()), points_range(p.interval)});
+    rows.push_back({p.env, p.task, p.seen ? "seen" : "unseen", concat(p.k_a, " of ", p.n_a),
+                    concat(p.k_b, " of ", p.n_b), points(p.change()), points_range(p.interval)});
   }
   text += concat("\nChanged most, of ", c.pairs.size(), c.pairs.size() == 1 ? " pair:\n" : " pairs:\n");
   text += table_text(rows, TableFormat::kText, 3) + '\n';
@@ -67,8 +70,8 @@ std::string comparison_text(const Comparison& c, size_t most) {
 
 void write_comparison(Output& output, const Comparison& c) {
   TsvWriter writer(output);
-  for (const char* name : {"level", "subset", "env", "task", "pairs", "successes_a", "episodes_a", "successes_b", "episodes_b", "rate_a",
-                           "rate_b", "change", "low", "high"})
+  for (const char* name : {"level", "subset", "env", "task", "pairs", "successes_a", "episodes_a", "successes_b",
+                           "episodes_b", "rate_a", "rate_b", "change", "low", "high"})
     writer.text(name);
   writer.end_row();
   for (const SubsetChange& s : c.subsets) {

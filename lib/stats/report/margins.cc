@@ -43,7 +43,8 @@ std::vector<Margin> margins_of(const Group& group, Axis axis) {
     margins[i].worst = worst->first;
     margins[i].worst_tally = worst->second;
   }
-  std::stable_sort(margins.begin(), margins.end(), [](const Margin& a, const Margin& b) { return a.rate() < b.rate(); });
+  std::stable_sort(margins.begin(), margins.end(),
+                   [](const Margin& a, const Margin& b) { return a.rate() < b.rate(); });
   return margins;
 }
 
@@ -62,14 +63,15 @@ std::string margins_text(const std::vector<GroupMargins>& groups, Axis axis, siz
   const bool tasks = axis == Axis::kTasks;
   std::string text;
   for (const GroupMargins& group : groups) {
-    std::vector<std::vector<std::string>> rows = {
-        {tasks ? "task" : "env", tasks ? "worst env" : "worst task", "%", "pairs", "k of n", "success %", "95 % interval", "seen %",
-         "unseen %"}};
+    std::vector<std::vector<std::string>> rows = {{tasks ? "task" : "env", tasks ? "worst env" : "worst task", "%",
+                                                   "pairs", "k of n", "success %", "95 % interval", "seen %",
+                                                   "unseen %"}};
     for (size_t i = 0; i < group.margins.size() && i < most; ++i) {
       const Margin& m = group.margins[i];
       const auto rate = [](const Tally& tally) { return percent(success().value(tally)); };
-      rows.push_back({m.name, m.worst, rate(m.worst_tally), std::to_string(m.pairs), concat(m.all.successes, " of ", m.all.episodes),
-                      rate(m.all), percent_range(wilson(m.all.successes, m.all.episodes)), rate(m.seen), rate(m.unseen)});
+      rows.push_back({m.name, m.worst, rate(m.worst_tally), std::to_string(m.pairs),
+                      concat(m.all.successes, " of ", m.all.episodes), rate(m.all),
+                      percent_range(wilson(m.all.successes, m.all.episodes)), rate(m.seen), rate(m.unseen)});
     }
     text += heading(group.group) + '\n' + table_text(rows, TableFormat::kText, 2) + '\n';
   }
@@ -80,9 +82,9 @@ std::string margins_text(const std::vector<GroupMargins>& groups, Axis axis, siz
 void write_margins(Output& output, const std::vector<GroupMargins>& groups, Axis axis, size_t most) {
   const bool tasks = axis == Axis::kTasks;
   TsvWriter writer(output);
-  for (const char* name : {"world", "window", "method", tasks ? "task" : "env", "runs", "pairs", "episodes", "successes", "success",
-                           "success_low", "success_high", "success_seen", "success_unseen", "reward", "length",
-                           tasks ? "worst_env" : "worst_task", "worst_success"})
+  for (const char* name : {"world", "window", "method", tasks ? "task" : "env", "runs", "pairs", "episodes",
+                           "successes", "success", "success_low", "success_high", "success_seen", "success_unseen",
+                           "reward", "length", tasks ? "worst_env" : "worst_task", "worst_success"})
     writer.text(name);
   writer.end_row();
   for (const GroupMargins& group : groups) {
@@ -91,7 +93,11 @@ void write_margins(Output& output, const std::vector<GroupMargins>& groups, Axis
       const Interval interval = wilson(m.all.successes, m.all.episodes);
       writer.text(group.group.world).whole(group.group.window).text(group.group.method).text(m.name);
       writer.whole(int64_t(group.group.runs.size())).whole(m.pairs).whole(m.all.episodes).whole(m.all.successes);
-      writer.real(m.rate()).real(interval.low).real(interval.high).real(success().value(m.seen)).real(success().value(m.unseen));
+      writer.real(m.rate())
+          .real(interval.low)
+          .real(interval.high)
+          .real(success().value(m.seen))
+          .real(success().value(m.unseen));
       writer.real(find_measure("reward").value(m.all)).real(find_measure("length").value(m.all));
       writer.text(m.worst).real(success().value(m.worst_tally)).end_row();
     }

@@ -13,9 +13,9 @@ enum class Axis { kTasks, kEnvs };  // tasks are a matrix's rows, environments i
 
 struct Margin {
   std::string name;
-  int64_t pairs = 0;         // different ones over all runs
-  Tally all, seen, unseen;   // over pairs and runs
-  std::string worst;         // the environment of the task's worst pair, or the other way round
+  int64_t pairs = 0;        // different ones over all runs
+  Tally all, seen, unseen;  // over pairs and runs
+  std::string worst;        // the environment of the task's worst pair, or the other way round
   Tally worst_tally;
   double rate() const { return double(all.successes) / double(all.episodes); }
 };

@@ -13,7 +13,8 @@ namespace {
 // A bootstrap of n values is too narrow by about sqrt((n - 1) / n), and its percentiles by more.
 constexpr int64_t kFewRuns = 10;
 
-TableCell cell_of(const Group& group, const std::string& subset, const MeasureKind& measure, const BootstrapPlan& plan) {
+TableCell cell_of(const Group& group, const std::string& subset, const MeasureKind& measure,
+                  const BootstrapPlan& plan) {
   TableCell cell;
   PairValues values;
   std::unordered_map<std::string, size_t> place;
@@ -53,12 +54,14 @@ TableCell cell_of(const Group& group, const std::string& subset, const MeasureKi
 
 std::string label_of(const Group& group, const std::vector<Group>& groups) {
   const auto several = [&](auto differs) {
-    return std::any_of(groups.begin(), groups.end(), [&](const Group& other) { return other.method == group.method && differs(other); });
+    return std::any_of(groups.begin(), groups.end(),
+                       [&](const Group& other) { return other.method == group.method && differs(other); });
   };
   std::string label = group.method.empty() ? "unnamed" : group.method;
   if (several([&](const Group& other) { return other.world != group.world; }))
     label += ", " + (group.world.empty() ? "unnamed world" : group.world);
-  if (several([&](const Group& other) { return other.window != group.window; })) label += concat(", window ", group.window);
+  if (several([&](const Group& other) { return other.window != group.window; }))
+    label += concat(", window ", group.window);
   return label;
 }
 
@@ -101,12 +104,15 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
     }
     rows.push_back(std::move(row));
   }
-  std::string words = concat(kind.name, kind.rate ? " in per cent of the episodes" : " per episode", ", every pair alike.\n");
-  if (spread) words += "a +- b: mean and standard deviation over runs (divisor: runs - 1); alike: all runs have this value.\n";
+  std::string words =
+      concat(kind.name, kind.rate ? " in per cent of the episodes" : " per episode", ", every pair alike.\n");
+  if (spread)
+    words += "a +- b: mean and standard deviation over runs (divisor: runs - 1); alike: all runs have this value.\n";
   if (!brief) words += "IQM: interquartile mean of the values of all runs and pairs.\n";
   if (resampled)
-    words += concat("Interval: bootstrap over runs, drawn ", table.plan.pair_by_pair ? "in each pair on its own" : "whole", ", ",
-                    table.plan.samples, " samples, seed ", table.plan.seed, few ? "; of so few runs it is too narrow.\n" : ".\n");
+    words += concat("Interval: bootstrap over runs, drawn ",
+                    table.plan.pair_by_pair ? "in each pair on its own" : "whole", ", ", table.plan.samples,
+                    " samples, seed ", table.plan.seed, few ? "; of so few runs it is too narrow.\n" : ".\n");
   if (starred) words += "w: Wilson's interval for k of n: one run, or runs all alike, tell nothing of other runs.\n";
   if (format == TableFormat::kMarkdown)
     if (const size_t at = words.find("+-"); at != std::string::npos) words.replace(at, 2, "\xc2\xb1");
@@ -121,15 +127,20 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
 
 void write_method_table(Output& output, const MethodTable& table) {
   TsvWriter writer(output);
-  for (const char* name : {"world", "window", "method", "subset", "measure", "runs", "pairs", "episodes", "mean", "sd", "iqm", "low",
-                           "high", "interval"})
+  for (const char* name : {"world", "window", "method", "subset", "measure", "runs", "pairs", "episodes", "mean", "sd",
+                           "iqm", "low", "high", "interval"})
     writer.text(name);
   writer.end_row();
   for (const TableLine& line : table.lines) {
     for (size_t i = 0; i < line.cells.size(); ++i) {
       const TableCell& cell = line.cells[i];
       writer.text(line.world).whole(line.window).text(line.method).text(table.subsets[i]).text(table.measure->name);
-      writer.whole(cell.runs).whole(cell.pairs).whole(cell.episodes).real(cell.over_runs.mean).real(cell.over_runs.sd).real(cell.iqm);
+      writer.whole(cell.runs)
+          .whole(cell.pairs)
+          .whole(cell.episodes)
+          .real(cell.over_runs.mean)
+          .real(cell.over_runs.sd)
+          .real(cell.iqm);
       writer.real(cell.interval.low).real(cell.interval.high);
       writer.text(std::isnan(cell.interval.low) ? "NA" : cell.wilson ? "wilson" : "bootstrap").end_row();
     }

@@ -14,10 +14,10 @@ namespace synpo {
 struct TableCell {
   int64_t runs = 0, pairs = 0;  // runs that have such pairs; different pairs over all of them
   int64_t episodes = 0;
-  MeanSd over_runs;             // of the runs' means over their pairs, every pair alike
-  double iqm;                   // interquartile mean of all values, one per run and pair
-  Interval interval;            // 95 %, for the mean; NaN where there is none
-  bool wilson = false;          // the interval is Wilson's for all successes in all episodes: the runs could tell nothing
+  MeanSd over_runs;     // of the runs' means over their pairs, every pair alike
+  double iqm;           // interquartile mean of all values, one per run and pair
+  Interval interval;    // 95 %, for the mean; NaN where there is none
+  bool wilson = false;  // the interval is Wilson's for all successes in all episodes: the runs could tell nothing
 };
 
 struct TableLine {
@@ -34,7 +34,8 @@ struct MethodTable {
   BootstrapPlan plan;
 };
 
-// The interval is the bootstrap's over runs. With one run, or runs that are all alike, it is Wilson's where the measure is a rate.
+// The interval is the bootstrap's over runs. With one run, or runs that are all alike, it is Wilson's where the measure
+// is a rate.
 MethodTable tabulate(const Matrix& matrix, const std::vector<std::string>& subsets, const MeasureKind& measure,
                      const BootstrapPlan& plan);
 

@@ -74,8 +74,8 @@ std::vector<std::string> notes_on(const Group& group) {
 std::vector<GroupSummary> summarise(const Matrix& matrix) {
   std::vector<GroupSummary> summaries;
   for (const Group& group : gather(matrix)) {
-    GroupSummary summary{group.world, group.method, group.window, group.seeds(), group.runs[0].updates, group.runs[0].updates, {},
-                         notes_on(group)};
+    GroupSummary summary{group.world,           group.method,          group.window, group.seeds(),
+                         group.runs[0].updates, group.runs[0].updates, {},           notes_on(group)};
     for (const Run& run : group.runs) {
       summary.least_updates = std::min(summary.least_updates, run.updates);
       summary.most_updates = std::max(summary.most_updates, run.updates);

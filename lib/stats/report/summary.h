@@ -16,14 +16,15 @@ struct Measure {
   MeanSd over_runs;
 };
 
-// NaN stands wherever there is no episode, no second run for an sd, or no number in the matrix (columns missing in one made by hand).
+// NaN stands wherever there is no episode, no second run for an sd, or no number in the matrix (columns missing in one
+// made by hand).
 struct SubsetSummary {
-  std::string name;      // seen, unseen, all; P, Q, rest where the matrix has parts
-  int64_t runs = 0;      // that have such pairs
-  int64_t pairs = 0;     // different pairs over all runs
+  std::string name;   // seen, unseen, all; P, Q, rest where the matrix has parts
+  int64_t runs = 0;   // that have such pairs
+  int64_t pairs = 0;  // different pairs over all runs
   int64_t episodes = 0, successes = 0;
-  Interval interval;     // Wilson, 95 %, of successes in episodes
-  double pair_mean;      // mean success of a run's pairs, every pair alike; then the mean over runs
+  Interval interval;  // Wilson, 95 %, of successes in episodes
+  double pair_mean;   // mean success of a run's pairs, every pair alike; then the mean over runs
   Measure success, reward, length, wrong, timeouts;
 };
 
@@ -31,10 +32,10 @@ struct SubsetSummary {
 struct GroupSummary {
   std::string world, method;
   int64_t window;
-  std::vector<uint64_t> seeds;              // a run each
+  std::vector<uint64_t> seeds;  // a run each
   int64_t least_updates, most_updates;
   std::vector<SubsetSummary> subsets;
-  std::vector<std::string> notes;           // what a reader of the numbers should know
+  std::vector<std::string> notes;  // what a reader of the numbers should know
 };
 
 // Groups in the order of their first row. Rows are taken as they are: merge_matrices first keeps double counting out.

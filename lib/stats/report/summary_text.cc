@@ -29,8 +29,8 @@ std::string summary_text(const std::vector<GroupSummary>& groups) {
     rows[0].insert(rows[0].end(), {"reward", "length", "wrong %", "timeouts %"});
     for (const SubsetSummary& subset : group.subsets) {
       const bool none = subset.episodes == 0;
-      std::vector<std::string> row = {subset.name, std::to_string(subset.pairs), concat(subset.successes, " of ", subset.episodes),
-                                      percent(subset.success.pooled),
+      std::vector<std::string> row = {subset.name, std::to_string(subset.pairs),
+                                      concat(subset.successes, " of ", subset.episodes), percent(subset.success.pooled),
                                       none ? "-" : percent_range(subset.interval)};
       if (several) row.push_back(cell(subset.success, "success", true));
       row.push_back(cell(subset.reward, "reward", several));
@@ -39,19 +39,23 @@ std::string summary_text(const std::vector<GroupSummary>& groups) {
       row.push_back(cell(subset.timeouts, "timeouts", several));
       rows.push_back(std::move(row));
     }
-    text += heading(group.method, group.world, group.window, group.least_updates, group.most_updates, group.seeds) + '\n';
+    text +=
+        heading(group.method, group.world, group.window, group.least_updates, group.most_updates, group.seeds) + '\n';
     text += table_text(rows) + '\n';
   }
   text += "k of n: successes of episodes, all pairs and runs together; interval: Wilson's, for k of n.\n";
   text += "reward and length: per episode; wrong and timeouts: share of the episodes.\n";
-  if (any_several) text += "a +- b: mean and standard deviation (divisor: runs - 1) of the runs' own values; alike: all have this value.\n";
+  if (any_several)
+    text +=
+        "a +- b: mean and standard deviation (divisor: runs - 1) of the runs' own values; alike: all have this "
+        "value.\n";
   return text;
 }
 
 void write_summary(Output& output, const std::vector<GroupSummary>& groups) {
   TsvWriter writer(output);
-  for (const char* name : {"world", "window", "method", "least_updates", "most_updates", "subset", "runs", "pairs", "episodes",
-                           "successes", "success_low", "success_high", "success_pair_mean"})
+  for (const char* name : {"world", "window", "method", "least_updates", "most_updates", "subset", "runs", "pairs",
+                           "episodes", "successes", "success_low", "success_high", "success_pair_mean"})
     writer.text(name);
   for (const char* name : {"success", "reward", "length", "wrong", "timeouts"})
     writer.text(name).text(concat(name, "_run_mean")).text(concat(name, "_run_sd"));
@@ -59,7 +63,11 @@ void write_summary(Output& output, const std::vector<GroupSummary>& groups) {
   for (const GroupSummary& group : groups) {
     for (const SubsetSummary& subset : group.subsets) {
       const bool none = subset.episodes == 0;
-      writer.text(group.world).whole(group.window).text(group.method).whole(group.least_updates).whole(group.most_updates);
+      writer.text(group.world)
+          .whole(group.window)
+          .text(group.method)
+          .whole(group.least_updates)
+          .whole(group.most_updates);
       writer.text(subset.name).whole(subset.runs).whole(subset.pairs).whole(subset.episodes).whole(subset.successes);
       writer.real(none ? NAN : subset.interval.low).real(none ? NAN : subset.interval.high).real(subset.pair_mean);
       for (const Measure* measure : {&subset.success, &subset.reward, &subset.length, &subset.wrong, &subset.timeouts})

@@ -71,7 +71,8 @@ std::string percent_range(const Interval& interval) { return range_text(interval
 
 std::string range_text(const Interval& interval, const MeasureKind& kind) {
   if (std::isnan(interval.low)) return "-";
-  return decimal(interval.low * kind.scale(), kind.digits) + " to " + decimal(interval.high * kind.scale(), kind.digits);
+  return decimal(interval.low * kind.scale(), kind.digits) + " to " +
+         decimal(interval.high * kind.scale(), kind.digits);
 }
 
 std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind) {
@@ -111,7 +112,8 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows, TableF
     }
     text += line.substr(0, line.find_last_not_of(' ') + 1) + '\n';
     if (!markdown || r > 0) continue;
-    for (size_t i = 0; i < widths.size(); ++i) text += (i ? " " : "| ") + std::string(widths[i] - 1, '-') + (i < left ? "- |" : ": |");
+    for (size_t i = 0; i < widths.size(); ++i)
+      text += (i ? " " : "| ") + std::string(widths[i] - 1, '-') + (i < left ? "- |" : ": |");
     text += '\n';
   }
   return text;

@@ -18,14 +18,15 @@ std::string percent(double rate, int digits = 1);
 std::string percent_range(const Interval& interval);
 std::string range_text(const Interval& interval, const MeasureKind& kind);
 
-// "85.0 +- 1.2", of one value "85.0". Never "100.0 +- 0.0": runs that are all alike are "100.0 (3 alike)", and where a value would
-// be rounded to a spread of 0 or to a mean of 100 that it isn't, more digits are shown.
+// "85.0 +- 1.2", of one value "85.0". Never "100.0 +- 0.0": runs that are all alike are "100.0 (3 alike)", and where a
+// value would be rounded to a spread of 0 or to a mean of 100 that it isn't, more digits are shown.
 std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind);
 
-// Rows of cells, the header first: the first `left` columns to the left, the others to the right. Text puts two blanks between
-// columns; LaTeX is a tabular with the lines of booktabs. "+-" becomes the sign where the format has one, and what a format would
-// take as a command is escaped.
-std::string table_text(const std::vector<std::vector<std::string>>& rows, TableFormat format = TableFormat::kText, size_t left = 1);
+// Rows of cells, the header first: the first `left` columns to the left, the others to the right. Text puts two blanks
+// between columns; LaTeX is a tabular with the lines of booktabs. "+-" becomes the sign where the format has one, and
+// what a format would take as a command is escaped.
+std::string table_text(const std::vector<std::vector<std::string>>& rows, TableFormat format = TableFormat::kText,
+                       size_t left = 1);
 
 // Characters of UTF-8 text.
 size_t text_width(const std::string& text);

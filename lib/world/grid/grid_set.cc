@@ -21,7 +21,8 @@ uint8_t start_cell(const Maze& maze, const StartPlaces& places, const std::strin
   if (found == places.end()) fail(Exit::kData, "field 'start': no place for ", quoted(name));
   const auto [row, column] = found->second;
   if (row < 0 || column < 0 || row >= kGridSide || column >= kGridSide || maze.wall[row * kGridSide + column])
-    fail(Exit::kData, "field 'start': ", quoted(name), " at row ", row, ", column ", column, " is not on the floor of ", maze.name);
+    fail(Exit::kData, "field 'start': ", quoted(name), " at row ", row, ", column ", column, " is not on the floor of ",
+         maze.name);
   return uint8_t(row * kGridSide + column);
 }
 
@@ -77,14 +78,18 @@ WorldStep GridSet::step(EnvTask pair, WorldState& state, int action) const {
   return step;
 }
 
-int GridSet::expert(EnvTask pair, const WorldState& state) const { return planners_[pair.env].action(task(pair), to_grid_state(state)); }
+int GridSet::expert(EnvTask pair, const WorldState& state) const {
+  return planners_[pair.env].action(task(pair), to_grid_state(state));
+}
 
 void GridSet::action_values(EnvTask pair, const WorldState& state, int* cents) const {
   const std::array<int, kGridActions> q = planners_[pair.env].q_cents(task(pair), to_grid_state(state));
   std::copy(q.begin(), q.end(), cents);
 }
 
-bool GridSet::at_choice(EnvTask, const WorldState& state) const { return treasure_under_agent(to_grid_state(state).now) >= 0; }
+bool GridSet::at_choice(EnvTask, const WorldState& state) const {
+  return treasure_under_agent(to_grid_state(state).now) >= 0;
+}
 
 size_t GridSet::observation_size() const { return size_t(kGridCells) * kHistory; }
 
@@ -109,17 +114,20 @@ WorldState GridSet::start_state(int env, const StartPlaces& places) const {
   for (int i = 0; i < kTreasures; ++i) {
     start.now.treasures[i] = start_cell(maze, places, treasure_name(i));
     for (int j = 0; j < i; ++j)
-      if (start.now.treasures[i] == start.now.treasures[j]) fail(Exit::kData, "field 'start': two treasures on one cell");
+      if (start.now.treasures[i] == start.now.treasures[j])
+        fail(Exit::kData, "field 'start': two treasures on one cell");
   }
   if (places.size() != 1 + kTreasures)
-    fail(Exit::kData, "field 'start': found ", places.size(), " places, expected the agent's and those of ", kTreasures, " treasures");
+    fail(Exit::kData, "field 'start': found ", places.size(), " places, expected the agent's and those of ", kTreasures,
+         " treasures");
   return to_world_state(start);
 }
 
 bool GridSet::valid(EnvTask pair, const WorldState& state) const {
   const GridState grid = to_grid_state(state);
   const Maze& maze = mazes_[pair.env];
-  if (grid.picked > 1 || grid.steps >= kStepLimit || maze.wall[grid.now.agent] || to_world_state(grid) != state) return false;
+  if (grid.picked > 1 || grid.steps >= kStepLimit || maze.wall[grid.now.agent] || to_world_state(grid) != state)
+    return false;
   for (int i = 0; i < kTreasures; ++i) {
     const bool gone = grid.picked == 1 && i == task(pair).first;
     if (gone != (grid.now.treasures[i] == kPicked) || (!gone && maze.wall[grid.now.treasures[i]])) return false;

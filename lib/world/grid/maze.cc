@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include "base/error.h"
+#include "base/files/io.h"
 #include "base/hash.h"
 #include "base/text.h"
-#include "base/files/io.h"
 #include "world/grid/builtin_maps.h"
 
 namespace synpo {
@@ -59,7 +59,8 @@ std::string Maze::canonical_text() const {
 Maze parse_maze(const std::string& name, const std::string& text, const std::string& where) {
   const std::vector<std::string> lines = split_lines(text);
   if (lines.size() != kGridSide)
-    fail(Exit::kData, where, ": found ", lines.size(), " lines, expected a maze of ", kGridSide, " lines of ", kGridSide, " characters");
+    fail(Exit::kData, where, ": found ", lines.size(), " lines, expected a maze of ", kGridSide, " lines of ",
+         kGridSide, " characters");
   Maze maze;
   maze.name = name;
   for (int row = 0; row < kGridSide; ++row) {
@@ -68,7 +69,8 @@ Maze parse_maze(const std::string& name, const std::string& text, const std::str
     if (line.size() > kGridSide)
       fail(Exit::kData, where, ": line ", row + 1, ": found ", line.size(), " characters, expected ", kGridSide);
     for (int column = 0; column < kGridSide; ++column) {
-      // Editors drop blanks at the end of a line: what is missing is floor, and the outer wall where it would stand in it.
+      // Editors drop blanks at the end of a line: what is missing is floor, and the outer wall where it would stand in
+      // it.
       const bool border = row == 0 || row == kGridSide - 1 || column == 0 || column == kGridSide - 1;
       const char c = column < int(line.size()) ? line[column] : border ? '#' : ' ';
       const auto place = [&] { return concat(where, ": line ", row + 1, ", column ", column + 1, ": "); };
@@ -79,7 +81,8 @@ Maze parse_maze(const std::string& name, const std::string& text, const std::str
       if (c != '#') maze.free_cells.push_back(uint8_t(row * kGridSide + column));
     }
   }
-  if (maze.free_cells.size() < 6) fail(Exit::kData, where, ": found ", maze.free_cells.size(), " floor cells, expected at least 6");
+  if (maze.free_cells.size() < 6)
+    fail(Exit::kData, where, ": found ", maze.free_cells.size(), " floor cells, expected at least 6");
   if (!connected(maze)) fail(Exit::kData, where, ": some floor cells cannot be reached from the others");
   maze.hash = Hash().add(maze.canonical_text()).value();
   return maze;

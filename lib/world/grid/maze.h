@@ -12,18 +12,18 @@ constexpr int kGridCells = kGridSide * kGridSide;
 
 // A cell's index is row * 16 + column; row 0 is the top.
 struct Maze {
-  std::string name;                       // the file's stem: map1
+  std::string name;  // the file's stem: map1
   std::array<bool, kGridCells> wall;
-  std::vector<uint8_t> free_cells;        // ascending
-  uint64_t hash;                          // of canonical_text()
+  std::vector<uint8_t> free_cells;  // ascending
+  uint64_t hash;                    // of canonical_text()
 
   // 16 lines of 16 characters, '#' and '@', each ended by a newline.
   std::string canonical_text() const;
 };
 
-// Parses map text. Blanks at the end of a line may be missing (floor; wall in the outermost column), and there may be more of them; so may blank
-// last lines. `where` names the source in messages. Throws kData
-// for another size, a foreign character, an outer wall with a hole, fewer than 6 free cells, or floor that is not connected.
+// Parses map text. Blanks at the end of a line may be missing (floor; wall in the outermost column), and there may be
+// more of them; so may blank last lines. `where` names the source in messages. Throws kData for another size, a foreign
+// character, an outer wall with a hole, fewer than 6 free cells, or floor that is not connected.
 Maze parse_maze(const std::string& name, const std::string& text, const std::string& where);
 
 // map1 to map20, built into the library.

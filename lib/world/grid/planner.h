@@ -24,8 +24,8 @@ class Planner {
  private:
   int value_cents(const Task& task, const GridState& state) const;
   const Maze* maze_;
-  std::vector<uint8_t> distance_;      // [256, 256]; 255 where a wall is in the way
-  std::vector<uint8_t> first_move_;    // [256, 256], the expert's move from one cell towards another; kPick at the goal
+  std::vector<uint8_t> distance_;    // [256, 256]; 255 where a wall is in the way
+  std::vector<uint8_t> first_move_;  // [256, 256], the expert's move from one cell towards another; kPick at the goal
 };
 
 }  // namespace synpo

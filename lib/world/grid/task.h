@@ -9,7 +9,7 @@ constexpr int kTreasures = 5;
 constexpr char kTreasureLetters[kTreasures + 1] = "RBGOP";  // red, blue, green, orange, purple
 
 struct Task {
-  int first, second;  // indices into kTreasureLetters
+  int first, second;         // indices into kTreasureLetters
   std::string name() const;  // "R-B"
 };
 

@@ -40,7 +40,8 @@ void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t col
 
 void draw_history(const Maze& maze, const GridHistory& history, int radius, uint8_t* pictures) {
   std::memset(pictures, kUnseen, kGridCells * kHistory);
-  for (int f = kHistory - history.count; f < kHistory; ++f) paint(maze, history.frames[f], radius, pictures + f, kHistory);
+  for (int f = kHistory - history.count; f < kHistory; ++f)
+    paint(maze, history.frames[f], radius, pictures + f, kHistory);
 }
 
 void GridHistory::push(const GridFrame& frame) {

@@ -1,8 +1,8 @@
 // What the agent sees: an RGB picture of 16 x 16 pixels.
 //
-// Cells outside the window (|row difference| and |column difference| at most `radius`) are black, but treasures not yet picked
-// are drawn wherever they are. Inside: wall or floor. The agent is drawn over whatever lies in its cell. Radius 0 is the blind
-// agent: it sees itself and the treasures, never a wall.
+// Cells outside the window (|row difference| and |column difference| at most `radius`) are black, but treasures not yet
+// picked are drawn wherever they are. Inside: wall or floor. The agent is drawn over whatever lies in its cell. Radius
+// 0 is the blind agent: it sees itself and the treasures, never a wall.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -14,17 +14,24 @@ namespace synpo {
 
 constexpr int kViewChannels = 3 * kHistory;
 
-// One colour a kind of cell. Everything but black lies on a corner of its own of the colours' hull as far as it can, so that a
-// single linear filter finds any one of them.
-enum GridColour : uint8_t { kUnseen, kFloor, kWall, kAgent, kFirstTreasure };  // treasures follow in the order of kTreasureLetters
+// One colour a kind of cell. Everything but black lies on a corner of its own of the colours' hull as far as it can, so
+// that a single linear filter finds any one of them.
+enum GridColour : uint8_t {
+  kUnseen,
+  kFloor,
+  kWall,
+  kAgent,
+  kFirstTreasure
+};  // treasures follow in the order of kTreasureLetters
 constexpr int kGridColours = kFirstTreasure + kTreasures;
 extern const std::array<Rgb, kGridColours> kPalette;
-constexpr float kPixelScale = 1.0f / 64;             // "fixed scaling": pixel value to network input
+constexpr float kPixelScale = 1.0f / 64;  // "fixed scaling": pixel value to network input
 
 // The colour of every cell, row by row.
 void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]);
 
-// The last four pictures' worth of a running episode, newest last. Before the first step the earlier ones are missing (zero).
+// The last four pictures' worth of a running episode, newest last. Before the first step the earlier ones are missing
+// (zero).
 struct GridHistory {
   std::array<GridFrame, kHistory> frames;
   uint8_t count = 0;

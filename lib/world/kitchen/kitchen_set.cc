@@ -46,7 +46,8 @@ void KitchenSet::place_objects(int env, const Places& places, KitchenState& stat
     const auto [row, column] = places[i];
     const std::string where = concat("'", kKitchenObjectNames[i], "': found row ", row, ", column ", column, ", ");
     const KitchenCell wanted = {int16_t(row), int16_t(column)};
-    const auto slot = wanted.row == row && wanted.column == column ? std::find(slots.begin(), slots.end(), wanted) : slots.end();
+    const auto slot =
+        wanted.row == row && wanted.column == column ? std::find(slots.begin(), slots.end(), wanted) : slots.end();
     if (slot == slots.end()) fail(Exit::kData, where, "where no object can lie");
     state.slots[i] = uint8_t(slot - slots.begin());
     if (std::find(state.slots.begin(), state.slots.begin() + int(i), state.slots[i]) != state.slots.begin() + int(i))

@@ -1,12 +1,13 @@
-// Kitchens from plans: the objects lie on any slots, and what the agent sees is drawn and made into features on the way.
+// Kitchens from plans: the objects lie on any slots, and what the agent sees is drawn and made into features on the
+// way.
 #pragma once
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "world/kitchen/view/features.h"
 #include "world/kitchen/geometry/make_tables.h"
 #include "world/kitchen/kitchen_world.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 

@@ -33,8 +33,10 @@ uint16_t start_pose(const KitchenTables& tables, const StartPlaces& places) {
     stands = true;
     if (pose.heading == heading && pose.horizon == horizon) return i;
   }
-  if (!stands) fail(Exit::kData, "'", kAgentField, "': found row ", row, ", column ", column, ", which is not a free cell");
-  fail(Exit::kData, "'", kViewField, "': found heading ", heading, ", horizon ", horizon, ", with which no episode starts");
+  if (!stands)
+    fail(Exit::kData, "'", kAgentField, "': found row ", row, ", column ", column, ", which is not a free cell");
+  fail(Exit::kData, "'", kViewField, "': found heading ", heading, ", horizon ", horizon,
+       ", with which no episode starts");
 }
 
 }  // namespace

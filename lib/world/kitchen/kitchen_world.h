@@ -1,5 +1,5 @@
-// Kitchens as a world: 21 tasks, the rules over tables, their expert, and the layout of observations and starts. Where tables and features come from,
-// KitchenSet (plans) and SceneKitchens (files) say.
+// Kitchens as a world: 21 tasks, the rules over tables, their expert, and the layout of observations and starts. Where
+// tables and features come from, KitchenSet (plans) and SceneKitchens (files) say.
 #pragma once
 #include <array>
 #include <string>
@@ -27,8 +27,9 @@ class KitchenWorld : public World {
 
   Sight sight() const override { return Sight::kFeatures; }
   size_t observation_size() const override;
-  // float [kHistory, kViewFeatures] of the views, oldest first and zero where there is none, then kHandFloats, of which the first is the number of the
-  // object in the hand now, kEmptyHand for none; the rest is zero. `window` means nothing here.
+  // float [kHistory, kViewFeatures] of the views, oldest first and zero where there is none, then kHandFloats, of which
+  // the first is the number of the object in the hand now, kEmptyHand for none; the rest is zero. `window` means
+  // nothing here.
   void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
 
   // "agent": row, column; "view": heading, horizon in degrees; and each object's name: row, column.
@@ -49,7 +50,8 @@ class KitchenWorld : public World {
   virtual const Room& room(int env, int layout) const = 0;
   // Writes the features [kViewFeatures] of what is seen of a state.
   virtual void write_view(int env, const KitchenState& state, float* features) const = 0;
-  // Layout and slots of the objects of a start, which lie at these rows and columns. Throws kData where no episode starts so.
+  // Layout and slots of the objects of a start, which lie at these rows and columns. Throws kData where no episode
+  // starts so.
   using Places = std::array<std::pair<int, int>, kKitchenObjects>;
   virtual void place_objects(int env, const Places& places, KitchenState& state) const = 0;
 

@@ -14,11 +14,12 @@ namespace {
 struct Size {
   int number, floor;  // of FloorPlan, and of its free cells
 };
-constexpr Size kSizes[] = {{1, 129}, {2, 115},  {3, 104},  {4, 69},  {5, 99},  {6, 134}, {8, 172}, {9, 76},  {11, 67}, {12, 79},
-                           {18, 222}, {20, 80}, {22, 136}, {23, 96}, {24, 61}, {25, 27}, {27, 43}, {28, 101}, {30, 59}};
+constexpr Size kSizes[] = {{1, 129}, {2, 115}, {3, 104}, {4, 69},   {5, 99},  {6, 134},  {8, 172},
+                           {9, 76},  {11, 67}, {12, 79}, {18, 222}, {20, 80}, {22, 136}, {23, 96},
+                           {24, 61}, {25, 27}, {27, 43}, {28, 101}, {30, 59}};
 
-constexpr int kDepth = 2;          // of counters, in cells
-constexpr int kLargeRoom = 90;     // free cells from which on something stands in the middle
+constexpr int kDepth = 2;       // of counters, in cells
+constexpr int kLargeRoom = 90;  // free cells from which on something stands in the middle
 constexpr int kFewestSlots = 14;
 constexpr int kAttempts = 200000;
 
@@ -75,7 +76,8 @@ void put_counter(Draft& draft, Random& random, int side) {
   const int begin = chance(random, 50) ? 0 : length - run;
   for (int along = begin; along < begin + run; ++along)
     for (int out = 0; out < kDepth; ++out) {
-      char& cell = sideways ? draft.at(along, side == 1 ? draft.columns() - 1 - out : out) : draft.at(side == 2 ? draft.rows() - 1 - out : out, along);
+      char& cell = sideways ? draft.at(along, side == 1 ? draft.columns() - 1 - out : out)
+                            : draft.at(side == 2 ? draft.rows() - 1 - out : out, along);
       if (cell == '.') cell = 'c';
     }
 }
@@ -93,7 +95,8 @@ bool put_island(Draft& draft, Random& random) {
   return true;
 }
 
-// Puts a receptacle into a counter along an outer wall with floor all along its front; false where none of some tries fits.
+// Puts a receptacle into a counter along an outer wall with floor all along its front; false where none of some tries
+// fits.
 bool put_receptacle(Draft& draft, Random& random, char letter, int width) {
   for (int i = 0; i < 12; ++i) {
     const int side = between(random, 0, 3);

@@ -1,4 +1,5 @@
-// The nineteen kitchens that are built in: plans made up from their numbers, with the sizes of those that Table 1 names.
+// The nineteen kitchens that are built in: plans made up from their numbers, with the sizes of those that Table 1
+// names.
 #pragma once
 #include <vector>
 

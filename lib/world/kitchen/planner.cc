@@ -17,7 +17,8 @@ int checked(KitchenTask task, uint16_t steps) {
 }  // namespace
 
 KitchenPlanner::KitchenPlanner(const std::string& name, const KitchenTables& tables)
-    : tables_(&tables), before_begin_(tables.poses.size() + 1, 0), door_(tables.poses.size() * kDoorStates), kept_(kKeptTables) {
+    : tables_(&tables), before_begin_(tables.poses.size() + 1, 0), door_(tables.poses.size() * kDoorStates),
+      kept_(kKeptTables) {
   const int poses = tables.pose_count();
   std::vector<std::vector<uint16_t>> before(tables.poses.size());
   for (int pose = 0; pose < poses; ++pose)
@@ -41,8 +42,8 @@ KitchenPlanner::KitchenPlanner(const std::string& name, const KitchenTables& tab
   }
 }
 
-// Lowers every state's steps to one more than those of a state that a move or a door leads to. States are taken in the order of their steps: those
-// given at first from buckets, those lowered on the way from the level before.
+// Lowers every state's steps to one more than those of a state that a move or a door leads to. States are taken in the
+// order of their steps: those given at first from buckets, those lowered on the way from the level before.
 void KitchenPlanner::relax(Steps& steps) const {
   const size_t poses = tables_->poses.size();
   std::vector<std::vector<uint32_t>> given;
@@ -73,14 +74,16 @@ void KitchenPlanner::relax(Steps& steps) const {
   }
 }
 
-KitchenPlanner::Steps KitchenPlanner::steps_with_empty_hand(KitchenTask task, const std::array<uint8_t, kKitchenObjects>& slots) const {
+KitchenPlanner::Steps KitchenPlanner::steps_with_empty_hand(KitchenTask task,
+                                                            const std::array<uint8_t, kKitchenObjects>& slots) const {
   const Steps& after = *to_receptacle_[size_t(task.receptacle)];
   Steps steps(after.size(), kFar);
   const int poses = tables_->pose_count();
   for (int doors = 0; doors < kDoorStates; ++doors) {
     const bool as_closed = doors > 0 && tables_->sight[size_t(doors)] == tables_->sight[0];
     for (int pose = 0; pose < poses; ++pose) {
-      const bool reached = as_closed ? steps[index(pose, 0)] != kFar : object_in_reach(*tables_, pose, doors, slots) == task.object;
+      const bool reached =
+          as_closed ? steps[index(pose, 0)] != kFar : object_in_reach(*tables_, pose, doors, slots) == task.object;
       if (reached) steps[index(pose, doors)] = uint16_t(after[index(pose, doors)] + 1);
     }
   }
@@ -130,7 +133,8 @@ std::array<int, kKitchenActions> KitchenPlanner::q_cents(KitchenTask task, const
     const WorldStep step = kitchen_step(*tables_, task, next, action);
     q[size_t(action)] = step.reward_cents;
     if (step.terminated) continue;
-    q[size_t(action)] += (next.hand == kEmptyHand ? kPickedCents : 0) + kFilledCents + kStepCents * steps_to_success(task, next);
+    q[size_t(action)] +=
+        (next.hand == kEmptyHand ? kPickedCents : 0) + kFilledCents + kStepCents * steps_to_success(task, next);
   }
   return q;
 }

@@ -1,7 +1,8 @@
 // The expert of a kitchen: exact shortest plans over pose, doors and hand.
 //
-// With the object in the hand the way to a receptacle depends on nothing else, and is found once. The way to the object depends on where all objects
-// lie; such tables are made when they are asked for, and the latest are kept. What comes out does not depend on what was kept.
+// With the object in the hand the way to a receptacle depends on nothing else, and is found once. The way to the object
+// depends on where all objects lie; such tables are made when they are asked for, and the latest are kept. What comes
+// out does not depend on what was kept.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -22,8 +23,8 @@ class KitchenPlanner {
 
   // Whether there is a way to success from here.
   bool has_plan(KitchenTask task, const KitchenState& state) const;
-  // Steps of the expert's episode from here to success. This and the next throw kInternal where objects lie so that there is none, which
-  // kitchen_tables() and SceneKitchens exclude.
+  // Steps of the expert's episode from here to success. This and the next throw kInternal where objects lie so that
+  // there is none, which kitchen_tables() and SceneKitchens exclude.
   int steps_to_success(KitchenTask task, const KitchenState& state) const;
   // The best action; ties go to the first in the order of the actions.
   int action(KitchenTask task, const KitchenState& state) const;

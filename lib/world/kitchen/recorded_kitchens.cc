@@ -21,7 +21,8 @@ std::string text_of(const KitchenPose& pose) {
 void check_poses(const std::string& name, const std::vector<KitchenPose>& poses) {
   std::set<std::array<int16_t, 4>> known;
   for (const KitchenPose& pose : poses)
-    if (!known.insert({pose.row, pose.column, pose.heading, pose.horizon}).second) fail(Exit::kData, name, ": two poses are alike: ", text_of(pose));
+    if (!known.insert({pose.row, pose.column, pose.heading, pose.horizon}).second)
+      fail(Exit::kData, name, ": two poses are alike: ", text_of(pose));
 }
 
 // A start names its layout by where the objects lie.
@@ -34,7 +35,8 @@ void check_layouts(const std::string& name, const std::vector<KitchenTables>& la
       cells[2 * object + 1] = layouts[i].slots[object].column;
     }
     if (const auto [found, fresh] = known.emplace(cells, i); !fresh)
-      fail(Exit::kData, name, ": in layouts ", found->second, " and ", i, " the objects lie in the same cells, expected no two layouts alike");
+      fail(Exit::kData, name, ": in layouts ", found->second, " and ", i,
+           " the objects lie in the same cells, expected no two layouts alike");
   }
 }
 
@@ -64,16 +66,21 @@ void SceneKitchens::Scene::check_room(int layout) const {
   state.slots = kOwnSlots;
   for (int doors = 0; doors < kDoorStates; ++doors)
     for (int pose = 0; pose < poses; ++pose) {
-      const auto where = [&] { return concat(kitchen.name, ", layout ", layout, ": from ", text_of(room.tables.poses[size_t(pose)]), ", doors ", doors); };
+      const auto where = [&] {
+        return concat(kitchen.name, ", layout ", layout, ": from ", text_of(room.tables.poses[size_t(pose)]),
+                      ", doors ", doors);
+      };
       const size_t first = (size_t(doors) * size_t(poses) + size_t(pose)) * kHands;
       for (int hand = 0; hand < kHands; ++hand)
         if (reached[first + size_t(hand)] && row_of(layout, doors, pose, hand) < 0)
-          fail(Exit::kData, where(), ", object in the hand ", hand, ": found no features, expected some where an episode can come by");
+          fail(Exit::kData, where(), ", object in the hand ", hand,
+               ": found no features, expected some where an episode can come by");
       if (!reached[first + kEmptyHand]) continue;
       state.pose = uint16_t(pose);
       state.doors = uint8_t(doors);
       for (int object = 0; object < kKitchenObjects; ++object)
-        if (!room.planner.has_plan({object, kSink}, state)) fail(Exit::kData, where(), ": the ", kKitchenObjectNames[object], " cannot be picked up");
+        if (!room.planner.has_plan({object, kSink}, state))
+          fail(Exit::kData, where(), ": the ", kKitchenObjectNames[object], " cannot be picked up");
     }
 }
 
@@ -81,8 +88,8 @@ SceneKitchens::SceneKitchens(std::vector<SceneKitchen> kitchens) {
   for (SceneKitchen& kitchen : kitchens) {
     add_environment({kitchen.name, kitchen.hash, ""});
     if (!all_.empty() && kitchen.extractor != extractor())
-      fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ", quoted(extractor()), " as of ",
-           environments()[0].name);
+      fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ",
+           quoted(extractor()), " as of ", environments()[0].name);
     all_.push_back(std::make_shared<const Scene>(std::move(kitchen)));
   }
 }
@@ -119,7 +126,8 @@ void SceneKitchens::write_view(int env, const KitchenState& state, float* featur
     const Half* halves = reinterpret_cast<const Half*>(scene.kitchen.features.data()) + size_t(row) * kViewFeatures;
     for (int i = 0; i < kViewFeatures; ++i) features[i] = to_float(halves[i]);
   } else {
-    std::memcpy(features, scene.kitchen.features.data() + size_t(row) * kViewFeatures * sizeof(float), kViewFeatures * sizeof(float));
+    std::memcpy(features, scene.kitchen.features.data() + size_t(row) * kViewFeatures * sizeof(float),
+                kViewFeatures * sizeof(float));
   }
 }
 
@@ -138,8 +146,8 @@ void SceneKitchens::place_objects(int env, const Places& places, KitchenState& s
     state.slots = kOwnSlots;
     return;
   }
-  fail(Exit::kData, "'", kKitchenObjectNames[most], "': found row ", places[most].first, ", column ", places[most].second,
-       ", where it lies in no layout with the other objects");
+  fail(Exit::kData, "'", kKitchenObjectNames[most], "': found row ", places[most].first, ", column ",
+       places[most].second, ", where it lies in no layout with the other objects");
 }
 
 }  // namespace synpo

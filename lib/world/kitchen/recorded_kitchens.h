@@ -1,5 +1,5 @@
-// Kitchens from files: the objects lie in one of some layouts, and what the agent sees from everywhere is known beforehand. In each layout object i is
-// slot i of that layout's tables.
+// Kitchens from files: the objects lie in one of some layouts, and what the agent sees from everywhere is known
+// beforehand. In each layout object i is slot i of that layout's tables.
 #pragma once
 #include <memory>
 #include <string>
@@ -14,7 +14,8 @@ struct SceneKitchen {
   uint64_t hash = 0;
   std::string extractor;               // World::extractor()
   std::vector<KitchenTables> layouts;  // alike but for slots and sight
-  // [layouts, doors, poses, kKitchenObjects + 1]: the row of the features, by the object in the hand, kEmptyHand for none; -1 where there is none.
+  // [layouts, doors, poses, kKitchenObjects + 1]: the row of the features, by the object in the hand, kEmptyHand for
+  // none; -1 where there is none.
   std::vector<int32_t> view;
   bool halves = true;    // features are Half, else float
   std::string features;  // [rows, kViewFeatures], as in memory
@@ -22,8 +23,9 @@ struct SceneKitchen {
 
 class SceneKitchens : public KitchenWorld {
  public:
-  // Tables and rows are in range. Throws kData for two kitchens of one name or of different extractors, poses or layouts that are alike, an object or
-  // a receptacle that cannot be used from everywhere, and a view that an episode comes by and that has no features.
+  // Tables and rows are in range. Throws kData for two kitchens of one name or of different extractors, poses or
+  // layouts that are alike, an object or a receptacle that cannot be used from everywhere, and a view that an episode
+  // comes by and that has no features.
   explicit SceneKitchens(std::vector<SceneKitchen> kitchens);
   // Some of the environments of another one, in this order; the features are shared.
   SceneKitchens(const SceneKitchens& from, const std::vector<int>& envs);

@@ -4,7 +4,8 @@
 
 namespace synpo {
 
-const char* const kKitchenActionNames[kKitchenActions] = {"MoveAhead", "RotateLeft", "RotateRight", "LookUp", "LookDown", "OpenClose", "PickupPut"};
+const char* const kKitchenActionNames[kKitchenActions] = {"MoveAhead", "RotateLeft", "RotateRight", "LookUp",
+                                                          "LookDown",  "OpenClose",  "PickupPut"};
 
 namespace {
 constexpr size_t kDoorsByte = 2, kHandByte = 3, kSlotBytes = 4, kLayoutBytes = kSlotBytes + kKitchenObjects;
@@ -45,7 +46,8 @@ KitchenState kitchen_reset(const KitchenTables& tables, Random& random) {
   return state;
 }
 
-int object_in_reach(const KitchenTables& tables, int pose, int doors, const std::array<uint8_t, kKitchenObjects>& slots) {
+int object_in_reach(const KitchenTables& tables, int pose, int doors,
+                    const std::array<uint8_t, kKitchenObjects>& slots) {
   int nearest = -1;
   uint16_t distance = 0;
   for (const KitchenSeen& seen : tables.sight[size_t(doors)]->slots.at(pose)) {
@@ -145,7 +147,9 @@ std::vector<bool> kitchen_reachable(const KitchenTables& tables, const std::arra
 
 bool kitchen_valid(const KitchenTables& tables, KitchenTask task, const WorldState& world) {
   const KitchenState state = unpack(world);
-  if (pack(state) != world || state.pose >= tables.poses.size() || state.doors >= kDoorStates || state.steps >= kStepLimit) return false;
+  if (pack(state) != world || state.pose >= tables.poses.size() || state.doors >= kDoorStates ||
+      state.steps >= kStepLimit)
+    return false;
   if (state.hand != kEmptyHand && state.hand != task.object) return false;
   for (size_t i = 0; i < kKitchenObjects; ++i) {
     const uint8_t slot = state.slots[i];

@@ -1,12 +1,14 @@
 // The kitchens' rules.
 //
-// Seven objects lie on distinct slots. A task is to put one of them into a receptacle. Actions MoveAhead RotateLeft RotateRight LookUp LookDown OpenClose
-// PickupPut cost 0.01 each; an invalid one costs another 0.01 and changes nothing: to move into something, to look past the last horizon, to open or
-// close where no door is visible, to pick up where no object is visible, to put where no receptacle is visible that is open or needs no opening.
-// OpenClose turns the door of the nearest visible receptacle that has one. PickupPut with an empty hand takes the nearest visible object (of equally
-// near ones the first): the right one gives +1, any other -10 and ends the episode. With an object in the hand it puts that into the nearest visible
-// receptacle that is open or needs no opening: the right one gives +10 and ends the episode in success, any other -10 and ends it. After 300 steps an
-// episode that has not ended is cut: truncated, not terminated.
+// Seven objects lie on distinct slots. A task is to put one of them into a receptacle. Actions MoveAhead RotateLeft
+// RotateRight LookUp LookDown OpenClose PickupPut cost 0.01 each; an invalid one costs another 0.01 and changes
+// nothing: to move into something, to look past the last horizon, to open or close where no door is visible, to pick up
+// where no object is visible, to put where no receptacle is visible that is open or needs no opening. OpenClose turns
+// the door of the nearest visible receptacle that has one. PickupPut with an empty hand takes the nearest visible
+// object (of equally near ones the first): the right one gives +1, any other -10 and ends the episode. With an object
+// in the hand it puts that into the nearest visible receptacle that is open or needs no opening: the right one gives
+// +10 and ends the episode in success, any other -10 and ends it. After 300 steps an episode that has not ended is cut:
+// truncated, not terminated.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -48,13 +50,14 @@ KitchenState kitchen_reset(const KitchenTables& tables, Random& random);
 WorldStep kitchen_step(const KitchenTables& tables, KitchenTask task, KitchenState& state, int action);
 
 // The object that PickupPut would take with an empty hand, or -1.
-int object_in_reach(const KitchenTables& tables, int pose, int doors, const std::array<uint8_t, kKitchenObjects>& slots);
+int object_in_reach(const KitchenTables& tables, int pose, int doors,
+                    const std::array<uint8_t, kKitchenObjects>& slots);
 // The receptacle that OpenClose would turn, or -1.
 int door_in_reach(const KitchenTables& tables, int pose, int doors);
 // The receptacle that PickupPut would fill with an object in the hand, or -1.
 int receptacle_in_reach(const KitchenTables& tables, int pose, int doors);
-// Through what a running episode can come that begins with the objects on these slots, [doors, poses, kKitchenObjects + 1]: where the agent is, and what
-// it has in its hand, kEmptyHand for nothing.
+// Through what a running episode can come that begins with the objects on these slots, [doors, poses, kKitchenObjects +
+// 1]: where the agent is, and what it has in its hand, kEmptyHand for nothing.
 std::vector<bool> kitchen_reachable(const KitchenTables& tables, const std::array<uint8_t, kKitchenObjects>& slots);
 // Whether this can be a state of a running episode of a task; the layout is not looked at.
 bool kitchen_valid(const KitchenTables& tables, KitchenTask task, const WorldState& state);

@@ -6,13 +6,13 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/cli/options.h"
+#include "base/cli/progress.h"
 #include "base/error.h"
 #include "base/files/folder.h"
-#include "base/hash.h"
 #include "base/files/io.h"
-#include "base/cli/options.h"
+#include "base/hash.h"
 #include "base/parallel.h"
-#include "base/cli/progress.h"
 #include "base/random.h"
 #include "base/text.h"
 #include "helpers/table_helpers.h"
@@ -47,7 +47,8 @@ TEST(Random, IsPhilox) {
   for (const uint32_t word : {0x6627e8d5u, 0xe169c58du, 0xbc57ac4cu, 0x9b00dbd8u}) EXPECT_EQ(zero.next(), word);
   Random random(0x123456789abcdef0, Purpose::kNoise, 17, 4711);
   for (uint32_t block = 0; block < 50; ++block)
-    for (const uint32_t word : philox({block, 17, 4711, uint32_t(Purpose::kNoise)}, {0x9abcdef0, 0x12345678 ^ uint32_t(Purpose::kNoise) << 24}))
+    for (const uint32_t word : philox({block, 17, 4711, uint32_t(Purpose::kNoise)},
+                                      {0x9abcdef0, 0x12345678 ^ uint32_t(Purpose::kNoise) << 24}))
       ASSERT_EQ(random.next(), word);
 }
 
@@ -119,7 +120,8 @@ TEST(Text, FirstBadByte) {
   EXPECT_EQ(bad("\x7f"), 0);
   EXPECT_EQ(bad(std::string_view("a\0", 2)), 1);
   // A lone continuation, a sequence cut off, overlong forms, a surrogate, beyond U+10FFFF.
-  for (const char* wrong : {"\x80", "\xc3", "\xe2\x82", "\xc0\xaf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xff"})
+  for (const char* wrong : {"\x80", "\xc3", "\xe2\x82", "\xc0\xaf", "\xe0\x9f\xbf", "\xf0\x8f\xbf\xbf", "\xed\xa0\x80",
+                            "\xf4\x90\x80\x80", "\xff"})
     EXPECT_EQ(bad(std::string("x") + wrong), 1);
 }
 
@@ -146,7 +148,8 @@ TEST(Hash, HexBothWays) {
   for (const uint64_t value : {0ull, 0x85944171f73967e8ull, ~0ull}) EXPECT_EQ(parse_hex(hex(value)), value);
   EXPECT_EQ(hex(0xab), "00000000000000ab");
   for (const char* bad : {"", "ab", "00000000000000AB", "00000000000000ag", "00000000000000abc"})
-    EXPECT_EQ(thrown([&] { parse_hex(bad); }), concat("65 found '", bad, "', expected a hash of 16 hexadecimal digits"));
+    EXPECT_EQ(thrown([&] { parse_hex(bad); }),
+              concat("65 found '", bad, "', expected a hash of 16 hexadecimal digits"));
 }
 
 TEST(Input, GivesLines) {
@@ -198,7 +201,8 @@ TEST(Input, GivesBytes) {
 
 TEST(Input, NamesWhatCannotBeOpened) {
   const TemporaryFolder folder;
-  EXPECT_EQ(thrown([&] { Input input(folder.file("none")); }), "66 cannot open '" + folder.file("none") + "': No such file or directory");
+  EXPECT_EQ(thrown([&] { Input input(folder.file("none")); }),
+            "66 cannot open '" + folder.file("none") + "': No such file or directory");
   EXPECT_EQ(thrown([&] { Input input(folder.path()); }), "66 cannot open '" + folder.path() + "': it is a folder");
 }
 
@@ -313,7 +317,8 @@ TEST(Options, SetValues) {
   const Settings none = parsed({});
   EXPECT_EQ(none.count, 7);
   EXPECT_FALSE(none.count_given);
-  const Settings s = parsed({"-f", "x", "-n", "2e4", "--part=0.25", "-oa b", "--call", "good", "--colour", "blue", "--", "-y"}, 1, 2);
+  const Settings s =
+      parsed({"-f", "x", "-n", "2e4", "--part=0.25", "-oa b", "--call", "good", "--colour", "blue", "--", "-y"}, 1, 2);
   EXPECT_TRUE(s.flag);
   EXPECT_EQ(s.count, 20000);
   EXPECT_TRUE(s.count_given);
@@ -331,7 +336,8 @@ TEST(Options, WrongUsageIs64) {
   EXPECT_EQ(wrong_usage({"--nothing"}), "64 unknown or ambiguous option '--nothing'" + help);
   EXPECT_EQ(wrong_usage({"-n"}), "64 option -n needs an argument" + help);
   EXPECT_EQ(wrong_usage({"--count"}), "64 option --count needs an argument" + help);
-  EXPECT_EQ(wrong_usage({"-n", "1000001"}), "64 option --count: found '1000001', expected a whole number from 0 to 1000000" + help);
+  EXPECT_EQ(wrong_usage({"-n", "1000001"}),
+            "64 option --count: found '1000001', expected a whole number from 0 to 1000000" + help);
   EXPECT_EQ(wrong_usage({"-n", "ten"}), "64 option --count: found 'ten', expected a whole number" + help);
   EXPECT_EQ(wrong_usage({"--part", "nan"}), "64 option --part: found 'nan', expected a number" + help);
   EXPECT_EQ(wrong_usage({"--part", "1.5"}), "64 option --part: found '1.5', expected a number from 0 to 1" + help);
@@ -351,7 +357,8 @@ TEST(Options, CountsAndTimes) {
   EXPECT_EQ(parse_seconds("30m"), 1800);
   EXPECT_EQ(parse_seconds("1.5h"), 5400);
   EXPECT_EQ(parse_seconds("45"), 45);
-  for (const char* bad : {"", "m", "0", "-1s", "nan", "inf", "1d", "1e9", "3 m"}) EXPECT_THROW(parse_seconds(bad), std::invalid_argument) << bad;
+  for (const char* bad : {"", "m", "0", "-1s", "nan", "inf", "1d", "1e9", "3 m"})
+    EXPECT_THROW(parse_seconds(bad), std::invalid_argument) << bad;
 }
 
 TEST(RunTool, TurnsWhatIsThrownIntoALineAndACode) {

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "draw/plot/curves.h"
-#include "draw/plot/curves_legend.h"
 #include "draw/canvas/stroke.h"
 #include "draw/canvas/ticks.h"
+#include "draw/plot/curves.h"
+#include "draw/plot/curves_legend.h"
 #include "format/run_log.h"
-#include "stats/curve.h"
 #include "helpers/table_helpers.h"
+#include "stats/curve.h"
 
 namespace synpo {
 namespace {
@@ -104,7 +104,9 @@ TEST(MeanCurve, OneRunIsItselfAndHasNoBand) {
   EXPECT_THROW(mean_curve({{{1, 2}, {0, 0}}, {{3, 4}, {0, 0}}}, Band::kSd), Error);
 }
 
-std::string log_text(const std::string& rows) { return "update\tstates\tseconds\tstates_per_s\tpolicy\tseen_success\n" + rows; }
+std::string log_text(const std::string& rows) {
+  return "update\tstates\tseconds\tstates_per_s\tpolicy\tseen_success\n" + rows;
+}
 
 RunLogTable read_log(const std::string& rows, RunLogAxis axis) {
   return read_text(log_text(rows), [&](Input& input) { return read_run_log(input, axis, {"policy", "seen_success"}); });
@@ -127,17 +129,19 @@ TEST(ReadRunLog, OfUpdatesDoneAgainTheLaterRowsCount) {
 }
 
 TEST(ReadRunLog, MinutesGoOnWhereARunIsResumed) {
-  // 6000 states at 100 a second are a minute. The second process begins at 12000 states; its clock begins at 0, and its second row
-  // comes after an evaluation of half a minute.
-  const RunLogTable log = read_log("1\t6000\t60\t100\t1\t0\n2\t12000\t120\t100\t1\t0\n3\t18000\t60\t100\t1\t0\n4\t24000\t150\t100\t1\t0\n",
-                                   RunLogAxis::kMinutes);
+  // 6000 states at 100 a second are a minute. The second process begins at 12000 states; its clock begins at 0, and its
+  // second row comes after an evaluation of half a minute.
+  const RunLogTable log =
+      read_log("1\t6000\t60\t100\t1\t0\n2\t12000\t120\t100\t1\t0\n3\t18000\t60\t100\t1\t0\n4\t24000\t150\t100\t1\t0\n",
+               RunLogAxis::kMinutes);
   EXPECT_EQ(log.x.size(), 4u);
   EXPECT_DOUBLE_EQ(log.x[2], 3);
   EXPECT_DOUBLE_EQ(log.x[3], 4.5);
   // Its first row after more seconds than the first process had: less time has passed than the states took.
   EXPECT_DOUBLE_EQ(read_log("1\t600\t6\t100\t1\t0\n2\t6600\t60\t100\t1\t0\n", RunLogAxis::kMinutes).x[1], 1.1);
   // Killed and done again: the time up to the row that is kept.
-  const RunLogTable killed = read_log("1\t6000\t60\t100\t1\t0\n2\t12000\t120\t100\t1\t0\n2\t12000\t60\t100\t1\t0\n", RunLogAxis::kMinutes);
+  const RunLogTable killed =
+      read_log("1\t6000\t60\t100\t1\t0\n2\t12000\t120\t100\t1\t0\n2\t12000\t60\t100\t1\t0\n", RunLogAxis::kMinutes);
   EXPECT_DOUBLE_EQ(killed.x[1], 2);
 }
 
@@ -150,17 +154,22 @@ TEST(ReadRunLog, NamesThePlaceOfWhatIsWrong) {
             "65 IN: line 2, column 6 ('seen_success'): found '1.01', expected a rate from 0 to 1, or NA");
   EXPECT_EQ(message("1\t10\t1\t10\t1\tNA\n2\t10\t2\t10\t1\tNA\n", states),
             "65 IN: line 3, column 2 ('states'): found '10', expected more than the 10 of the row before");
-  EXPECT_EQ(message("1\t10\t1\t0\t1\tNA\n", minutes), "65 IN: line 2, column 4 ('states_per_s'): found '0', expected a rate above 0");
-  EXPECT_EQ(message("1\t10\t-1\t10\t1\tNA\n", minutes), "65 IN: line 2, column 3 ('seconds'): found '-1', expected a time of at least 0");
+  EXPECT_EQ(message("1\t10\t1\t0\t1\tNA\n", minutes),
+            "65 IN: line 2, column 4 ('states_per_s'): found '0', expected a rate above 0");
+  EXPECT_EQ(message("1\t10\t-1\t10\t1\tNA\n", minutes),
+            "65 IN: line 2, column 3 ('seconds'): found '-1', expected a time of at least 0");
   EXPECT_EQ(message("x\t10\t1\t10\t1\tNA\n", updates).substr(0, 37), "65 IN: line 2, column 1 ('update'): f");
   const auto columns = [](const std::string& text) {
-    return thrown([&] { read_text(text, [](Input& input) { return read_run_log(input, RunLogAxis::kMinutes, {"policy"}); }); });
+    return thrown(
+        [&] { read_text(text, [](Input& input) { return read_run_log(input, RunLogAxis::kMinutes, {"policy"}); }); });
   };
   EXPECT_EQ(columns("env\ttask\na\tb\n"), "65 IN: line 1: no column 'update', found 'env', 'task'");
   EXPECT_EQ(columns("update\tstates\n"), "65 IN: line 1: no column 'seconds', found 'update', 'states'");
 }
 
-int ink(const Mask& mask, int x, int y) { return mask.coverage[size_t(y - mask.box.y) * mask.box.width + (x - mask.box.x)]; }
+int ink(const Mask& mask, int x, int y) {
+  return mask.coverage[size_t(y - mask.box.y) * mask.box.width + (x - mask.box.x)];
+}
 
 TEST(Stroke, CoversItsWidthAndStaysInItsBox) {
   const Box box = {10, 10, 40, 20};
@@ -214,17 +223,20 @@ TEST(Curves, NothingIsClippedAndLegendsStandAboveThePlots) {
   for (const int methods : {1, 3, 7})
     for (const int panels : {1, 2})
       for (const double scale : {0.5, 1.0, 2.0}) {
-        const CurveSet set = curve_set(methods, 1 + methods % 2, methods == 7 ? "a method with a rather long name and number " : "m");
+        const CurveSet set =
+            curve_set(methods, 1 + methods % 2, methods == 7 ? "a method with a rather long name and number " : "m");
         CurvesStyle style;
         style.scale = scale;
         style.panels = panels;
         style.title = methods == 3 ? ""
-                                   : "A title that is rather long for a picture of this size, and is wrapped at its blanks as it has to be";
+                                   : "A title that is rather long for a picture of this size, and is wrapped at its "
+                                     "blanks as it has to be";
         style.x_title = "updates";
         style.y_title = "success (%)";
         style.percent = true;
         style.height_pt = 330;
-        style.marks = {{82.1, "a label that is much too long to stand beside a plot of this size", "unseen"}, {81, "near", ""},
+        style.marks = {{82.1, "a label that is much too long to stand beside a plot of this size", "unseen"},
+                       {81, "near", ""},
                        {0, "low", ""}};
         const CurvesLayout layout = lay_out_curves(set, style, font());
         const Canvas canvas = draw_curves(set, style, font());
@@ -270,7 +282,8 @@ TEST(Curves, TheAxisEndsAtTheRoundNumberThatTheLongestRunAlmostReaches) {
   const auto end = [](double last, double given) {
     CurvesStyle style;
     style.x.high = given;
-    const CurvesLayout layout = lay_out_curves(average_runs({{"", {{{{last / 2, last}, {3, 4}}}}}}, {""}, Band::kSd), style, font());
+    const CurvesLayout layout =
+        lay_out_curves(average_runs({{"", {{{{last / 2, last}, {3, 4}}}}}}, {""}, Band::kSd), style, font());
     const Box plot = layout.panels[0].plot;
     const double left = layout.axes.place(plot, 0, 0).x, right = layout.axes.place(plot, last, 0).x;
     return last * plot.width / (right - left);

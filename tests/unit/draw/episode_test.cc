@@ -5,11 +5,11 @@
 #include <set>
 
 #include "base/error.h"
+#include "draw/canvas/video.h"
 #include "draw/colour.h"
 #include "draw/episode/path.h"
-#include "draw/paper.h"
 #include "draw/grid/terminal_path.h"
-#include "draw/canvas/video.h"
+#include "draw/paper.h"
 #include "helpers/mazes.h"
 #include "helpers/temporary.h"
 #include "world/grid/planner.h"
@@ -42,8 +42,10 @@ const std::vector<uint8_t> kSuccess = {kRight, kRight, kPick, kRight, kPick};
 TEST(Film, SaysWhatCameOfAnEpisode) {
   EXPECT_EQ(describe(film(kSuccess)), "success after 5 steps (the fewest), reward 11.95; R at step 3, B at step 5");
   EXPECT_EQ(describe(film({kUp, kPick, kRight, kRight, kPick, kRight, kPick})),
-            "success after 7 steps (5 would do), reward 11.92; R at step 5, B at step 7; 1 step into walls; 1 pick where nothing lies");
-  EXPECT_EQ(describe(film({kRight, kRight, kRight, kPick})), "wrong pick after 4 steps (success takes 5), reward \u221210.04; B at step 4");
+            "success after 7 steps (5 would do), reward 11.92; R at step 5, B at step 7; 1 step into walls; 1 pick "
+            "where nothing lies");
+  EXPECT_EQ(describe(film({kRight, kRight, kRight, kPick})),
+            "wrong pick after 4 steps (success takes 5), reward \u221210.04; B at step 4");
   EXPECT_EQ(describe(film(std::vector<uint8_t>(300, kUp))),
             "timeout after 300 steps (success takes 5), reward \u22126.00; no treasure picked; 300 steps into walls");
   EXPECT_EQ(outcome(film({kRight})), "unfinished");
@@ -88,11 +90,15 @@ TEST(EpisodePicture, NothingIsClippedAndBytesAreTheSame) {
   const std::vector<uint8_t> into_the_wall(300, kUp);
   GridState on_treasure = start();
   on_treasure.now.agent = cell(1, 3);
-  for (const Film& each : {film(kSuccess), film({kPick}, on_treasure), film({kRight, kRight, kRight, kPick}), film(into_the_wall), film({kRight})})
+  for (const Film& each : {film(kSuccess), film({kPick}, on_treasure), film({kRight, kRight, kRight, kPick}),
+                           film(into_the_wall), film({kRight})})
     for (const double scale : {0.25, 1.0, 2.0}) {
       EpisodeStyle style;
       style.scale = scale;
-      style.title = scale == 1 ? "A title that is much too long for the picture, so that it has to be broken into several lines of text" : "";
+      style.title =
+          scale == 1
+              ? "A title that is much too long for the picture, so that it has to be broken into several lines of text"
+              : "";
       const Canvas canvas = draw_episode(each, style, font());
       EXPECT_EQ(canvas.clipped(), 0) << scale;
       EXPECT_EQ(canvas.png(), draw_episode(each, style, font()).png());
@@ -151,7 +157,8 @@ TEST(Video, IsWholeOrNotThere) {
 TEST(TerminalPath, WithoutColour) {
   const std::string text = terminal_path(film(kSuccess), TerminalColour::kNone);
   const std::string wall(16 * 4, '#');
-  EXPECT_TRUE(text.starts_with("open, task R-B\n" + wall + "\n####   0   1R  2B  4" + std::string(40, ' ') + "####\n")) << text;
+  EXPECT_TRUE(text.starts_with("open, task R-B\n" + wall + "\n####   0   1R  2B  4" + std::string(40, ' ') + "####\n"))
+      << text;
   EXPECT_TRUE(text.ends_with(wall + "\n" + describe(film(kSuccess)) + "\n")) << text;
   EXPECT_EQ(text.find('\033'), std::string::npos);
 }

@@ -7,11 +7,11 @@
 #include <stdexcept>
 
 #include "base/error.h"
-#include "draw/grid/agent_view.h"
 #include "draw/canvas/canvas.h"
 #include "draw/colour.h"
-#include "draw/plot/heatmap.h"
+#include "draw/grid/agent_view.h"
 #include "draw/grid/maze_picture.h"
+#include "draw/plot/heatmap.h"
 #include "format/matrix.h"
 
 namespace synpo {
@@ -59,7 +59,8 @@ bool same(Rgb a, Rgb b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
 
 TEST(Pool, SumsRunsAndMeansOfGroups) {
   Matrix matrix;
-  matrix.rows = {row("a", "x", true, 10), row("a", "x", true, 70), row("b", "x", false, 30), row("c", "y", false, 50, 50)};
+  matrix.rows = {row("a", "x", true, 10), row("a", "x", true, 70), row("b", "x", false, 30),
+                 row("c", "y", false, 50, 50)};
   matrix.rows[1].run = "00000000000000bb";
   const HeatTable table = pool_matrix(matrix);
   EXPECT_EQ(table.at(0, 0).episodes, 200);
@@ -182,7 +183,8 @@ TEST(Heatmap, NothingIsClippedAndLabelsKeepApart) {
     for (const double scale : {0.5, 1.0, 2.0}) {
       HeatmapStyle style;
       style.scale = scale;
-      style.title = side % 2 ? "" : "A title that is rather long for a picture of a matrix of this size, and is wrapped";
+      style.title =
+          side % 2 ? "" : "A title that is rather long for a picture of a matrix of this size, and is wrapped";
       const HeatFigure matrix = figure(square(side));
       const HeatmapLayout layout = lay_out_heatmap(matrix, style, font());
       const Canvas canvas = draw_heatmap(matrix, style, font());
@@ -215,7 +217,8 @@ TEST(Heatmap, ValuesStandInTheCellsUpToFiftyAtTheDefaultScale) {
 }
 
 TEST(Heatmap, LongNamesFit) {
-  const HeatFigure matrix = figure(square(5, std::string(300, 'e'), "put the tomato and the mug and the plate into the fridge "));
+  const HeatFigure matrix =
+      figure(square(5, std::string(300, 'e'), "put the tomato and the mug and the plate into the fridge "));
   const Canvas canvas = draw_heatmap(matrix, {}, font());
   EXPECT_EQ(canvas.clipped(), 0);
   EXPECT_LT(canvas.width(), 1500);
@@ -274,7 +277,8 @@ TEST(Maps, WallsAreDark) {
   Canvas canvas(16 * 10, 16 * 10, font());
   draw_maze(canvas, 0, 0, 10, maze);
   for (int cell = 0; cell < kGridCells; ++cell)
-    EXPECT_TRUE(same(canvas.at(cell % 16 * 10 + 5, cell / 16 * 10 + 5), maze.wall[cell] ? kPaperWall : kPaperFloor)) << cell;
+    EXPECT_TRUE(same(canvas.at(cell % 16 * 10 + 5, cell / 16 * 10 + 5), maze.wall[cell] ? kPaperWall : kPaperFloor))
+        << cell;
 }
 
 TEST(View, ShowsThePaletteOfTheAgentsPicture) {

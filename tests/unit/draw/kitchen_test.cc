@@ -5,11 +5,11 @@
 
 #include "base/error.h"
 #include "draw/colour.h"
+#include "draw/episode/path.h"
 #include "draw/kitchen/kitchen_agent_view.h"
 #include "draw/kitchen/kitchen_episode_picture.h"
 #include "draw/kitchen/kitchen_moment.h"
 #include "draw/kitchen/kitchen_picture.h"
-#include "draw/episode/path.h"
 #include "draw/terminal/terminal.h"
 #include "helpers/kitchen_rooms.h"
 #include "world/kitchen/plan.h"
@@ -47,7 +47,9 @@ KitchenFilm play(const char* task, const char* played) {
   return play_kitchen_film(small_world(), pair_of(task), start(), actions);
 }
 
-KitchenFilm play(const char* task, const std::vector<uint8_t>& actions) { return play_kitchen_film(small_world(), pair_of(task), start(), actions); }
+KitchenFilm play(const char* task, const std::vector<uint8_t>& actions) {
+  return play_kitchen_film(small_world(), pair_of(task), start(), actions);
+}
 
 constexpr int kCell = 20;
 
@@ -79,7 +81,9 @@ TEST(KitchenPicture, EveryCellHasTheColourOfWhatStandsThere) {
 TEST(KitchenPicture, DoorsAreMarkedAtTheFrontAndAreSeenToBeOpen) {
   const Kitchen kitchen = small_kitchen();
   const Canvas closed = plan(kitchen, 0), open = plan(kitchen, 1 << kFridge);
-  const auto front = [](const Canvas& canvas) { return canvas.at(3 * kCell, 3 * kCell - 4); };  // of the Fridge, which faces down
+  const auto front = [](const Canvas& canvas) {
+    return canvas.at(3 * kCell, 3 * kCell - 4);
+  };  // of the Fridge, which faces down
   EXPECT_LT(luminance(front(closed)), luminance(receptacle_colour(kFridge)) / 2);
   EXPECT_TRUE(closed.at(3 * kCell, kCell + 4) == receptacle_colour(kFridge)) << "its back has no mark";
   EXPECT_TRUE(open.at(2 * kCell + 7, kCell + 7) == paper_colour(kInsideColour));
@@ -112,10 +116,13 @@ TEST(KitchenPicture, AsTextTheyAreTheirPlans) {
   for (const char c : kitchen.text) expected += c == '\n' ? "\n" : std::string(2, c == '.' ? ' ' : c);
   EXPECT_EQ(terminal_kitchens({kitchen}, {}, TerminalColour::kNone, 80), expected);
   const std::string coloured = terminal_kitchens({kitchen}, {}, TerminalColour::kTrue, 80);
-  EXPECT_NE(coloured.find(ground_code(receptacle_colour(kFridge), TerminalColour::kTrue) + "FFFF" + kPlainCode), std::string::npos);
+  EXPECT_NE(coloured.find(ground_code(receptacle_colour(kFridge), TerminalColour::kTrue) + "FFFF" + kPlainCode),
+            std::string::npos);
   EXPECT_EQ(coloured.find('#'), std::string::npos);
   const std::string both = terminal_kitchens({builtin_kitchens()[15], kitchen}, {}, TerminalColour::kNone, 80);
-  EXPECT_TRUE(both.starts_with("FloorPlan25" + std::string(9, ' ') + "small\n" + std::string(18, '#') + "  " + std::string(20, '#') + "\n")) << both;
+  EXPECT_TRUE(both.starts_with("FloorPlan25" + std::string(9, ' ') + "small\n" + std::string(18, '#') + "  " +
+                               std::string(20, '#') + "\n"))
+      << both;
   EXPECT_EQ(both.find(" \n"), std::string::npos);
 }
 
@@ -173,7 +180,8 @@ TEST(KitchenView, NothingIsClippedAndBytesAreTheSame) {
   for (const double scale : {0.25, 1.0})
     for (const bool history : {false, true})
       for (const int64_t steps : {0, 2}) {
-        const KitchenMoment moment = kitchen_moment(small_world(), pair_of("Mug-Fridge"), Random(1, Purpose::kEpisodeStart), steps);
+        const KitchenMoment moment =
+            kitchen_moment(small_world(), pair_of("Mug-Fridge"), Random(1, Purpose::kEpisodeStart), steps);
         const Canvas canvas = draw_kitchen_view(moment, {history, "", scale}, font());
         EXPECT_EQ(canvas.clipped(), 0) << scale << history << steps;
         EXPECT_EQ(canvas.png(), draw_kitchen_view(moment, {history, "", scale}, font()).png());
@@ -184,7 +192,9 @@ TEST(KitchenView, TheExpertsEpisodeEnds) {
   const EnvTask pair = pair_of("Mug-Fridge");
   int64_t steps = 0;
   while (kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps).expert_action >= 0) ++steps;
-  EXPECT_EQ(draw_kitchen_view(kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps), {}, font()).clipped(), 0);
+  EXPECT_EQ(draw_kitchen_view(kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps), {}, font())
+                .clipped(),
+            0);
   EXPECT_THROW(kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps + 1), Error);
 }
 
@@ -195,7 +205,8 @@ TEST(KitchenFilm, KnowsWhatWasOpenedTakenAndFilled) {
     if (event_of(film, i).deed != Deed::kNone) deeds.push_back(action_words(film, i));
   std::sort(deeds.begin(), deeds.end());
   EXPECT_EQ(deeds, (std::vector<std::string>{"open Fridge", "pick Mug", "put in Fridge"}));
-  EXPECT_TRUE(describe(film).starts_with(concat("success after ", film.steps(), " steps (the fewest), reward 10."))) << describe(film);
+  EXPECT_TRUE(describe(film).starts_with(concat("success after ", film.steps(), " steps (the fewest), reward 10.")))
+      << describe(film);
   EXPECT_TRUE(describe(film).ends_with(concat("Fridge filled at step ", film.steps()))) << describe(film);
 }
 
@@ -241,12 +252,17 @@ TEST(KitchenPath, RunsOverAPlanOfAnyWidth) {
 TEST(KitchenEpisode, NothingIsClippedAndBytesAreTheSame) {
   std::vector<uint8_t> to_and_fro;
   for (int i = 0; i < 60; ++i) to_and_fro.insert(to_and_fro.end(), {kMoveAhead, kRotateLeft, kRotateLeft});
-  for (const KitchenFilm& film : {play("Mug-Fridge", "Mug-Fridge"), play("Mug-Fridge", "Tomato-Fridge"), play("Mug-Fridge", "Mug-Microwave"),
-                                  play("Mug-Sink", std::vector<uint8_t>(300, kRotateLeft)), play("Mug-Sink", to_and_fro), play("Mug-Sink", {kLookUp})})
+  for (const KitchenFilm& film :
+       {play("Mug-Fridge", "Mug-Fridge"), play("Mug-Fridge", "Tomato-Fridge"), play("Mug-Fridge", "Mug-Microwave"),
+        play("Mug-Sink", std::vector<uint8_t>(300, kRotateLeft)), play("Mug-Sink", to_and_fro),
+        play("Mug-Sink", {kLookUp})})
     for (const double scale : {0.25, 1.0}) {
       EpisodeStyle style;
       style.scale = scale;
-      style.title = scale == 1 ? "A title that is much too long for the picture, so that it has to be broken into several lines of text" : "";
+      style.title =
+          scale == 1
+              ? "A title that is much too long for the picture, so that it has to be broken into several lines of text"
+              : "";
       const Canvas canvas = draw_kitchen_episode(film, style, font());
       EXPECT_EQ(canvas.clipped(), 0) << scale << describe(film);
       EXPECT_EQ(canvas.png(), draw_kitchen_episode(film, style, font()).png());
@@ -259,7 +275,8 @@ TEST(KitchenEpisode, TheStripMakesItHigher) {
   some.strip = 3;
   more.strip = 13;
   const KitchenFilm film = play("Mug-Sink", std::vector<uint8_t>(20, kRotateLeft));
-  const int without = draw_kitchen_episode(film, none, font()).height(), one_row = draw_kitchen_episode(film, some, font()).height();
+  const int without = draw_kitchen_episode(film, none, font()).height(),
+            one_row = draw_kitchen_episode(film, some, font()).height();
   EXPECT_GT(one_row, without + 100);
   EXPECT_GT(draw_kitchen_episode(film, more, font()).height(), one_row + 200);
 }

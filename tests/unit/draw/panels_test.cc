@@ -46,7 +46,9 @@ HeatTable square(int side) {
   return table(pairs);
 }
 
-HeatFigure arranged(const HeatTable& one, HeatOrder tasks, HeatOrder envs = HeatOrder::kPaper) { return arrange({{"", one}}, grid_task_names(), tasks, envs); }
+HeatFigure arranged(const HeatTable& one, HeatOrder tasks, HeatOrder envs = HeatOrder::kPaper) {
+  return arrange({{"", one}}, grid_task_names(), tasks, envs);
+}
 
 TEST(Order, OfThePaper) {
   std::vector<Pair> pairs;
@@ -60,7 +62,8 @@ TEST(Order, OfThePaper) {
 }
 
 TEST(Order, GivenNaturalAndMeanOfEitherAxis) {
-  const HeatTable one = table({{"e10", "t9", 10}, {"e2", "t9", 50}, {"e10", "t10", 90}, {"e2", "t10", 50}, {"e2", "t1", 95}});
+  const HeatTable one =
+      table({{"e10", "t9", 10}, {"e2", "t9", 50}, {"e10", "t10", 90}, {"e2", "t10", 50}, {"e2", "t1", 95}});
   const auto names = [&](HeatOrder tasks, HeatOrder envs) {
     const HeatTable out = arranged(one, tasks, envs).panels[0].table;
     return std::pair(out.tasks, out.envs);
@@ -79,7 +82,8 @@ TEST(Order, GivenNaturalAndMeanOfEitherAxis) {
 TEST(Order, ClusterByHand) {
   // x and z: sqrt((0.2^2 + 0.2^2) / 2) = 0.2; x and y: 1; y and z: 0.8, so y joins at 0.9. All means are 0.5.
   const HeatFigure figure =
-      arranged(table({{"a", "x", 100}, {"b", "x", 0}, {"a", "y", 0}, {"b", "y", 100}, {"a", "z", 80}, {"b", "z", 20}}), HeatOrder::kCluster);
+      arranged(table({{"a", "x", 100}, {"b", "x", 0}, {"a", "y", 0}, {"b", "y", 100}, {"a", "z", 80}, {"b", "z", 20}}),
+               HeatOrder::kCluster);
   EXPECT_EQ(figure.panels[0].table.tasks, (Names{"x", "z", "y"}));
   EXPECT_EQ(figure.panels[0].table.envs, (Names{"a", "b"}));
   ASSERT_TRUE(figure.task_tree);
@@ -91,8 +95,8 @@ TEST(Order, ClusterByHand) {
 
 TEST(Order, ClusterPassesOverGaps) {
   // p and q share no environment: 1 apart. r is as far from either as their one common pair says: 0.1 and 0.3.
-  const HeatFigure figure =
-      arranged(table({{"a", "p", 50}, {"b", "q", 50}, {"a", "r", 60}, {"b", "r", 80}}), HeatOrder::kCluster, HeatOrder::kCluster);
+  const HeatFigure figure = arranged(table({{"a", "p", 50}, {"b", "q", 50}, {"a", "r", 60}, {"b", "r", 80}}),
+                                     HeatOrder::kCluster, HeatOrder::kCluster);
   EXPECT_DOUBLE_EQ(figure.task_tree->merges[0].height, 0.1);
   EXPECT_DOUBLE_EQ(figure.task_tree->merges[1].height, (1 + 0.3) / 2);
   EXPECT_EQ(figure.panels[0].table.tasks, (Names{"r", "p", "q"}));
@@ -101,7 +105,9 @@ TEST(Order, ClusterPassesOverGaps) {
 }
 
 TEST(Panels, HaveTheNamesAndKindsOfAny) {
-  const HeatFigure figure = arrange({{"first", table({{"e1", "x", 10, false}})}, {"second", table({{"e1", "y", 30, true}, {"e0", "x", 50, true}})}}, grid_task_names());
+  const HeatFigure figure = arrange(
+      {{"first", table({{"e1", "x", 10, false}})}, {"second", table({{"e1", "y", 30, true}, {"e0", "x", 50, true}})}},
+      grid_task_names());
   for (const HeatPanel& panel : figure.panels) {
     EXPECT_EQ(panel.table.envs, (Names{"e0", "e1"}));
     EXPECT_EQ(panel.table.tasks, (Names{"x", "y"}));
@@ -122,7 +128,8 @@ TEST(Panels, HaveTheNamesAndKindsOfAny) {
 TEST(Panels, AreOrderedTogether) {
   // Over both panels y is the better one.
   const HeatFigure figure =
-      arrange({{"", table({{"e", "x", 60}, {"e", "y", 50}})}, {"", table({{"e", "x", 20}, {"e", "y", 90}})}}, grid_task_names(), HeatOrder::kMean);
+      arrange({{"", table({{"e", "x", 60}, {"e", "y", 50}})}, {"", table({{"e", "x", 20}, {"e", "y", 90}})}},
+              grid_task_names(), HeatOrder::kMean);
   for (const HeatPanel& panel : figure.panels) EXPECT_EQ(panel.table.tasks, (Names{"y", "x"}));
 }
 
@@ -138,7 +145,10 @@ TEST(Panels, TooManyNamesAreRefused) {
 }
 
 TEST(Margins, PoolTheLineAndEachOfItsKinds) {
-  const HeatTable one = arranged(table({{"a", "x", 80, true}, {"b", "x", 20, false}, {"a", "y", 40, true}}), HeatOrder::kPaper).panels[0].table;
+  const HeatTable one =
+      arranged(table({{"a", "x", 80, true}, {"b", "x", 20, false}, {"a", "y", 40, true}}), HeatOrder::kPaper)
+          .panels[0]
+          .table;
   const std::vector<HeatMargin> margins = margins_of(one);
   ASSERT_EQ(margins.size(), 3u);
   EXPECT_EQ(margins[0].name, "mean");
@@ -174,8 +184,8 @@ TEST(Panels, NothingIsClippedAndNothingMeets) {
 }
 
 TEST(Panels, MarginsAndTreesStandBesideTheirRows) {
-  const HeatFigure figure = arrange({{"", table({{"a", "x", 80}, {"b", "x", 20}, {"a", "y", 40}, {"b", "y", 40}})}}, grid_task_names(), HeatOrder::kCluster,
-                                    HeatOrder::kCluster);
+  const HeatFigure figure = arrange({{"", table({{"a", "x", 80}, {"b", "x", 20}, {"a", "y", 40}, {"b", "y", 40}})}},
+                                    grid_task_names(), HeatOrder::kCluster, HeatOrder::kCluster);
   HeatmapStyle style;
   style.values = false;
   style.margins = true;
@@ -186,10 +196,15 @@ TEST(Panels, MarginsAndTreesStandBesideTheirRows) {
   const Rgb mean_of_x = ramp_colour({0, 0}, 0.5);
   const int middle = layout.cell / 2;
   EXPECT_TRUE(same(canvas.at(matrix.right() + layout.margin_space + middle, matrix.y + middle), mean_of_x));
-  const auto inked = [&](int x, int y) { return same(canvas.at(x, y), kSoftInk) || same(canvas.at(x - 1, y), kSoftInk) || same(canvas.at(x, y - 1), kSoftInk); };
+  const auto inked = [&](int x, int y) {
+    return same(canvas.at(x, y), kSoftInk) || same(canvas.at(x - 1, y), kSoftInk) ||
+           same(canvas.at(x, y - 1), kSoftInk);
+  };
   for (int leaf = 0; leaf < 2; ++leaf) {
     EXPECT_TRUE(inked(matrix.x + leaf * layout.cell + middle - 1, matrix.y - layout.tree_space - 2)) << leaf;
-    EXPECT_TRUE(inked(layout.right_of(layout.panels[0]) + layout.tree_space + 1, matrix.y + leaf * layout.cell + middle - 1)) << leaf;
+    EXPECT_TRUE(
+        inked(layout.right_of(layout.panels[0]) + layout.tree_space + 1, matrix.y + leaf * layout.cell + middle - 1))
+        << leaf;
   }
 }
 
@@ -198,7 +213,10 @@ TEST(Panels, SameBytesEveryTime) {
     HeatmapStyle style;
     style.margins = true;
     const Font fresh;
-    return draw_heatmap(arrange({{"A", square(9)}, {"B", square(7)}}, grid_task_names(), HeatOrder::kCluster, HeatOrder::kCluster), style, fresh).png();
+    return draw_heatmap(arrange({{"A", square(9)}, {"B", square(7)}}, grid_task_names(), HeatOrder::kCluster,
+                                HeatOrder::kCluster),
+                        style, fresh)
+        .png();
   };
   EXPECT_EQ(bytes(), bytes());
 }

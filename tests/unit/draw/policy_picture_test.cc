@@ -4,9 +4,9 @@
 
 #include <algorithm>
 
+#include "draw/grid/maze_picture.h"
 #include "draw/plot/embedding_picture.h"
 #include "draw/plot/labels.h"
-#include "draw/grid/maze_picture.h"
 #include "helpers/mazes.h"
 
 namespace synpo {
@@ -28,12 +28,14 @@ GridState treasures() {
 // UP everywhere, with this probability.
 PolicyStage always_up(const Maze& maze, const GridState& state, double probability) {
   const double rest = (1 - probability) / 4;
-  return compare_to_planner(maze, Planner(maze), kRedBlue, state,
-                            std::vector(maze.free_cells.size(), std::array<double, kGridActions>{probability, rest, rest, rest, rest}));
+  return compare_to_planner(
+      maze, Planner(maze), kRedBlue, state,
+      std::vector(maze.free_cells.size(), std::array<double, kGridActions>{probability, rest, rest, rest, rest}));
 }
 
 const PolicyCell& at(const PolicyStage& stage, uint8_t cell) {
-  return *std::find_if(stage.cells.begin(), stage.cells.end(), [&](const PolicyCell& each) { return each.cell == cell; });
+  return *std::find_if(stage.cells.begin(), stage.cells.end(),
+                       [&](const PolicyCell& each) { return each.cell == cell; });
 }
 
 TEST(PolicyStage, OptimalActionsByHand) {
@@ -63,9 +65,12 @@ TEST(PolicyPicture, NothingIsClippedAndDisagreementHasAGround) {
   const PolicyStage stage = always_up(maze, treasures(), 0.6);
   for (const double scale : {0.25, 1.0, 2.0})
     for (const int stages : {1, 2}) {
-      const Canvas canvas = draw_policy(maze, kRedBlue, std::vector(size_t(stages), stage), {"title", "caption", scale}, font());
+      const Canvas canvas =
+          draw_policy(maze, kRedBlue, std::vector(size_t(stages), stage), {"title", "caption", scale}, font());
       EXPECT_EQ(canvas.clipped(), 0) << scale;
-      EXPECT_EQ(canvas.png(), draw_policy(maze, kRedBlue, std::vector(size_t(stages), stage), {"title", "caption", scale}, font()).png());
+      EXPECT_EQ(
+          canvas.png(),
+          draw_policy(maze, kRedBlue, std::vector(size_t(stages), stage), {"title", "caption", scale}, font()).png());
     }
 }
 
@@ -80,11 +85,16 @@ Embeddings tasks_on_a_line(int count) {
 }
 
 TEST(EmbeddingPicture, NothingIsClipped) {
-  Embeddings envs{"environments", {"a maze with a name that is longer than any maze's name should ever be", "map1", "map2"}, {}, 2, {0, 0, 1, 1, 2, 0}};
+  Embeddings envs{"environments",
+                  {"a maze with a name that is longer than any maze's name should ever be", "map1", "map2"},
+                  {},
+                  2,
+                  {0, 0, 1, 1, 2, 0}};
   Embeddings alike{"alike", {"x", "y"}, {}, 2, {1, 1, 1, 1}};
   for (const double scale : {0.5, 1.0, 2.0}) {
     const EmbeddingStyle style{"title", "caption", scale};
-    for (const auto& panels : {std::vector{envs, tasks_on_a_line(20)}, std::vector{alike}, std::vector{tasks_on_a_line(2)}}) {
+    for (const auto& panels :
+         {std::vector{envs, tasks_on_a_line(20)}, std::vector{alike}, std::vector{tasks_on_a_line(2)}}) {
       EXPECT_EQ(draw_embedding_map(panels, style, font()).clipped(), 0) << scale;
       EXPECT_EQ(draw_embedding_distances(panels, Distance::kCosine, style, font()).clipped(), 0) << scale;
       EXPECT_EQ(draw_embedding_distances(panels, Distance::kEuclidean, style, font()).clipped(), 0) << scale;
@@ -107,7 +117,9 @@ TEST(Labels, KeepApart) {
   const Box plot = {0, 0, 300, 300};
   const std::vector<Box> labels = place_labels(points, 12, plot, font());
   ASSERT_EQ(labels.size(), points.size());
-  const auto apart = [](const Box& a, const Box& b) { return a.right() <= b.x || b.right() <= a.x || a.bottom() <= b.y || b.bottom() <= a.y; };
+  const auto apart = [](const Box& a, const Box& b) {
+    return a.right() <= b.x || b.right() <= a.x || a.bottom() <= b.y || b.bottom() <= a.y;
+  };
   for (size_t i = 0; i < labels.size(); ++i)
     for (size_t j = 0; j < i; ++j) EXPECT_TRUE(apart(labels[i], labels[j])) << i << " " << j;
   const std::vector<Box> cornered = place_labels({{{292, 292, 8, 8}, "name"}}, 12, plot, font());

@@ -39,7 +39,8 @@ TEST(Terminal, GroupsWithoutPairsAreNotNamed) {
   HeatTable with_empty = table();
   with_empty.groups.push_back({"rest"});
   for (const TerminalColour colour : {TerminalColour::kNone, TerminalColour::kTrue})
-    EXPECT_EQ(terminal_matrix(with_empty, find_scheme("safe"), colour, 10), terminal_matrix(table(), find_scheme("safe"), colour, 10));
+    EXPECT_EQ(terminal_matrix(with_empty, find_scheme("safe"), colour, 10),
+              terminal_matrix(table(), find_scheme("safe"), colour, 10));
 }
 
 TEST(Terminal, BlocksShrinkToTheWidth) {
@@ -48,8 +49,10 @@ TEST(Terminal, BlocksShrinkToTheWidth) {
     const size_t at = text.find("\npush ") + 1;
     std::string line = text.substr(at, text.find('\n', at) - at), plain;
     for (size_t i = 0; i < line.size(); ++i) {
-      if (line[i] == '\033') i = line.find('m', i);
-      else plain += line[i];
+      if (line[i] == '\033')
+        i = line.find('m', i);
+      else
+        plain += line[i];
     }
     return plain;
   };
@@ -64,7 +67,8 @@ TEST(Terminal, BlocksShrinkToTheWidth) {
 size_t mazes_in_a_row(int64_t columns, int width) {
   MapStyle style;
   style.columns = columns;
-  const std::string text = terminal_maps(builtin_mazes(), style, TerminalColour::kNone, width), line = text.substr(0, text.find('\n'));
+  const std::string text = terminal_maps(builtin_mazes(), style, TerminalColour::kNone, width),
+                    line = text.substr(0, text.find('\n'));
   size_t names = 0;
   for (size_t at = line.find("map"); at != std::string::npos; at = line.find("map", at + 1)) ++names;
   return names;
@@ -78,7 +82,8 @@ TEST(Terminal, Mazes) {
   ASSERT_TRUE(plain.starts_with("One\n\nmap1\n" + std::string(32, '#') + '\n'));
   const size_t first = plain.find('#');
   for (int cell = 0; cell < kGridCells; ++cell)
-    EXPECT_EQ(plain[first + cell / kGridSide * (2 * kGridSide + 1) + cell % kGridSide * 2], maze.wall[cell] ? '#' : ' ') << cell;
+    EXPECT_EQ(plain[first + cell / kGridSide * (2 * kGridSide + 1) + cell % kGridSide * 2], maze.wall[cell] ? '#' : ' ')
+        << cell;
   const std::string coloured = terminal_maps({maze}, {}, TerminalColour::kTrue, 80);
   EXPECT_TRUE(coloured.starts_with("map1\n\033[38;5;231;48;2;62;70;82m" + std::string(32, ' ') + "\033[0m\n"));
   EXPECT_EQ(coloured.find('#'), std::string::npos);

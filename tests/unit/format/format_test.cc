@@ -90,20 +90,28 @@ TEST(SafeTensors, EveryTruncationIsRefused) {
   EXPECT_EQ(tensors_refused(""), "65 cannot read IN: it is empty");
   for (size_t size = 1; size < bytes.size(); ++size) {
     const std::string message = tensors_refused(bytes.substr(0, size));
-    ASSERT_TRUE(message.starts_with(concat("65 cannot read IN: it ends at byte ", size, ", "))) << size << " " << message;
+    ASSERT_TRUE(message.starts_with(concat("65 cannot read IN: it ends at byte ", size, ", ")))
+        << size << " " << message;
   }
   EXPECT_EQ(tensors_refused(bytes + "x"), "65 cannot read IN: bytes follow the last tensor");
 }
 
 TEST(SafeTensors, RefusesBadHeaders) {
-  const auto length_only = [](uint64_t length) { return std::string(reinterpret_cast<const char*>(&length), 8) + "{}"; };
+  const auto length_only = [](uint64_t length) {
+    return std::string(reinterpret_cast<const char*>(&length), 8) + "{}";
+  };
   for (const uint64_t length : {uint64_t{0}, uint64_t{1}, uint64_t{(100 << 20) + 1}, ~uint64_t{0}})
-    EXPECT_EQ(tensors_refused(length_only(length)), concat("65 cannot read IN: not a safetensors file (header length ", length, ")"));
-  EXPECT_EQ(tensors_refused(length_only(100 << 20)), "65 cannot read IN: it ends at byte 10, in the middle of the header");
+    EXPECT_EQ(tensors_refused(length_only(length)),
+              concat("65 cannot read IN: not a safetensors file (header length ", length, ")"));
+  EXPECT_EQ(tensors_refused(length_only(100 << 20)),
+            "65 cannot read IN: it ends at byte 10, in the middle of the header");
   for (const char* header : {"  ", "[]", "{}}", "{\"a\"", "null"})
-    EXPECT_EQ(tensors_refused(safetensors(header, 0)), "65 cannot read IN: not a safetensors file (the header is no JSON object)");
-  EXPECT_EQ(tensors_refused(safetensors(std::string(1000000, '['), 0)), "65 cannot read IN: not a safetensors file (nested header)");
-  EXPECT_EQ(tensors_refused(safetensors(R"({"__metadata__":{"a":1}})", 0)), "65 cannot read IN: metadata 'a' is no string");
+    EXPECT_EQ(tensors_refused(safetensors(header, 0)),
+              "65 cannot read IN: not a safetensors file (the header is no JSON object)");
+  EXPECT_EQ(tensors_refused(safetensors(std::string(1000000, '['), 0)),
+            "65 cannot read IN: not a safetensors file (nested header)");
+  EXPECT_EQ(tensors_refused(safetensors(R"({"__metadata__":{"a":1}})", 0)),
+            "65 cannot read IN: metadata 'a' is no string");
   EXPECT_EQ(tensors_refused(safetensors(R"({"__metadata__":[]})", 0)), "65 cannot read IN: metadata is no object");
   EXPECT_EQ(tensors_of(safetensors("{}", 0)).tensors.size(), 0u);
 }
@@ -116,26 +124,37 @@ TEST(SafeTensors, RefusesBadTensors) {
   const std::string start = "65 cannot read IN: tensor 't': ";
   EXPECT_EQ(tensors_refused(safetensors(R"({"t":3})", 0)), start + "expected dtype, shape and data_offsets");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2])"), start + "expected dtype, shape and data_offsets");
-  EXPECT_EQ(tensor_refused(R"("dtype":"BF16","shape":[4],"data_offsets":[0,8])"), start + "type '\"BF16\"', this build reads F16, F32, F64, I32, I64, U8 and U64");
-  EXPECT_EQ(tensor_refused(R"("dtype":4,"shape":[4],"data_offsets":[0,8])"), start + "type '4', this build reads F16, F32, F64, I32, I64, U8 and U64");
-  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":2,"data_offsets":[0,8])"), start + "shape is no array of at most 8 numbers");
-  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[1,1,1,1,1,1,1,1,2],"data_offsets":[0,8])"), start + "shape is no array of at most 8 numbers");
+  EXPECT_EQ(tensor_refused(R"("dtype":"BF16","shape":[4],"data_offsets":[0,8])"),
+            start + "type '\"BF16\"', this build reads F16, F32, F64, I32, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":4,"shape":[4],"data_offsets":[0,8])"),
+            start + "type '4', this build reads F16, F32, F64, I32, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":2,"data_offsets":[0,8])"),
+            start + "shape is no array of at most 8 numbers");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[1,1,1,1,1,1,1,1,2],"data_offsets":[0,8])"),
+            start + "shape is no array of at most 8 numbers");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[0,8,9])"), start + "data_offsets is no pair");
   for (const char* extent : {"-2", "2.0", "\"2\"", "null", "1e99"})
-    EXPECT_TRUE(tensor_refused(concat(R"("dtype":"F32","shape":[)", extent, R"(],"data_offsets":[0,8])")).find("expected a whole number from 0") !=
-                std::string::npos);
-  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[0,4])"), start + "data_offsets 0 to 4, expected 8 bytes");
-  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[8,0])"), start + "data_offsets 8 to 0, expected 8 bytes");
+    EXPECT_TRUE(tensor_refused(concat(R"("dtype":"F32","shape":[)", extent, R"(],"data_offsets":[0,8])"))
+                    .find("expected a whole number from 0") != std::string::npos);
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[0,4])"),
+            start + "data_offsets 0 to 4, expected 8 bytes");
+  EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2],"data_offsets":[8,0])"),
+            start + "data_offsets 8 to 0, expected 8 bytes");
   // Products of extents that are 8 modulo 2^64, and sizes that nothing holds.
-  for (const char* shape : {"[4294967296,4294967296]", "[2305843009213693952,2]", "[18446744073709551615]", "[3,6148914691236517206]", "[17179869184]"})
-    EXPECT_EQ(tensor_refused(concat(R"("dtype":"F32","shape":)", shape, R"(,"data_offsets":[0,8])")), start + "larger than 17179869184 bytes") << shape;
+  for (const char* shape : {"[4294967296,4294967296]", "[2305843009213693952,2]", "[18446744073709551615]",
+                            "[3,6148914691236517206]", "[17179869184]"})
+    EXPECT_EQ(tensor_refused(concat(R"("dtype":"F32","shape":)", shape, R"(,"data_offsets":[0,8])")),
+              start + "larger than 17179869184 bytes")
+        << shape;
   EXPECT_EQ(tensor_refused(R"("dtype":"U8","shape":[8000000000],"data_offsets":[0,8000000000])"),
             "65 cannot read IN: it ends at byte 87, in the middle of tensor 't'");
 }
 
 TEST(SafeTensors, TensorsLieOneBehindTheOther) {
   const auto two = [](const char* a, const char* b, size_t bytes) {
-    return tensors_refused(safetensors(concat(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":)", a, R"(},"b":{"dtype":"F32","shape":[1],"data_offsets":)", b, "}}"), bytes));
+    return tensors_refused(safetensors(concat(R"({"a":{"dtype":"F32","shape":[1],"data_offsets":)", a,
+                                              R"(},"b":{"dtype":"F32","shape":[1],"data_offsets":)", b, "}}"),
+                                       bytes));
   };
   EXPECT_EQ(two("[0,4]", "[0,4]", 8), "65 cannot read IN: tensor 'b' begins at 0, expected 4");
   EXPECT_EQ(two("[0,4]", "[2,6]", 8), "65 cannot read IN: tensor 'b' begins at 2, expected 4");
@@ -152,7 +171,8 @@ TEST(SafeTensors, DamagedFilesAreReadOrRefusedAndNothingElse) {
     Random random(2, Purpose::kNoise, 0, i);
     std::string bytes = good;
     for (uint32_t changes = 1 + random.below(3); changes > 0; --changes)
-      bytes[8 + random.below(uint32_t(length))] = random.below(4) ? good[8 + random.below(uint32_t(length))] : char(random.below(256));
+      bytes[8 + random.below(uint32_t(length))] =
+          random.below(4) ? good[8 + random.below(uint32_t(length))] : char(random.below(256));
     try {
       tensors_of(bytes);
     } catch (const Error& error) {
@@ -246,24 +266,31 @@ std::string checkpoint_refused(const char* key, const std::string& value, bool e
 
 TEST(Checkpoint, RefusesOtherMetadata) {
   EXPECT_EQ(checkpoint_refused("version", "2"), "65 cannot read IN: version 2, this build reads 1 to 1");
-  EXPECT_EQ(checkpoint_refused("version", "one"), "65 cannot read IN: metadata 'version': found 'one', expected a whole number from 0");
+  EXPECT_EQ(checkpoint_refused("version", "one"),
+            "65 cannot read IN: metadata 'version': found 'one', expected a whole number from 0");
   EXPECT_EQ(checkpoint_refused("format", "other"), "65 cannot read IN: not a synpo checkpoint");
   EXPECT_EQ(checkpoint_refused("format", "", true), "65 cannot read IN: not a synpo checkpoint");
-  for (const char* key : {"method", "world", "rules", "window", "updates", "states", "seed", "tasks", "seen", "shape", "options", "envs"})
+  for (const char* key :
+       {"method", "world", "rules", "window", "updates", "states", "seed", "tasks", "seen", "shape", "options", "envs"})
     EXPECT_EQ(checkpoint_refused(key, "", true), concat("65 cannot read IN: no metadata '", key, "'"));
   for (const char* key : {"rules", "window", "updates", "states", "seed"})
     for (const char* value : {"-1", "1.5", "\"1\"", "", "[]", "1e30", "18446744073709551616"})
-      EXPECT_EQ(checkpoint_refused(key, value), concat("65 cannot read IN: metadata '", key, "': found '", value, "', expected a whole number from 0"));
-  const std::string malformed = "65 cannot read IN: malformed metadata (", deep = std::string(100000, '[') + std::string(100000, ']');
+      EXPECT_EQ(checkpoint_refused(key, value),
+                concat("65 cannot read IN: metadata '", key, "': found '", value, "', expected a whole number from 0"));
+  const std::string malformed = "65 cannot read IN: malformed metadata (",
+                    deep = std::string(100000, '[') + std::string(100000, ']');
   for (const char* key : {"tasks", "seen", "options", "envs"}) {
     EXPECT_EQ(checkpoint_refused(key, "{"), concat("65 cannot read IN: metadata '", key, "': no JSON"));
     for (const std::string& value : {std::string("3"), std::string("[3]"), std::string("{\"a\":[]}"), deep})
       EXPECT_TRUE(checkpoint_refused(key, value).starts_with(malformed)) << key << " " << quoted(value);
   }
   EXPECT_EQ(checkpoint_refused("shape", "{"), "65 cannot read IN: metadata 'shape': no JSON");
-  for (const char* value : {"3", "[3]"}) EXPECT_TRUE(checkpoint_refused("shape", value).starts_with(malformed)) << value;
+  for (const char* value : {"3", "[3]"})
+    EXPECT_TRUE(checkpoint_refused("shape", value).starts_with(malformed)) << value;
   for (const char* value : {"1.5", "1e300", "true", "\"1\"", "[]", "null"})
-    EXPECT_EQ(checkpoint_refused("shape", concat("{\"a\":", value, "}")), "65 cannot read IN: metadata 'shape': 'a' is no whole number") << value;
+    EXPECT_EQ(checkpoint_refused("shape", concat("{\"a\":", value, "}")),
+              "65 cannot read IN: metadata 'shape': 'a' is no whole number")
+        << value;
 }
 
 TEST(RunLog, WritesARowAReport) {
@@ -279,7 +306,8 @@ TEST(RunLog, WritesARowAReport) {
     row.right[0] = 0.5;
     row.right[1] = std::nan("");
     log.write(row);
-    EXPECT_EQ(contents(folder.file("log")).find("100\t51200\t2100\t1.5\t0\t0\t2.25\t0\t0\t0\t0\t0.5\tNA\t0\t0\tNA\tNA\tNA\tNA\n"),
+    EXPECT_EQ(contents(folder.file("log"))
+                  .find("100\t51200\t2100\t1.5\t0\t0\t2.25\t0\t0\t0\t0\t0.5\tNA\t0\t0\tNA\tNA\tNA\tNA\n"),
               contents(folder.file("log")).find('\n') + 1);
     row.evaluation = {0.25, -1, 0.125, -2};
     log.write(row);
@@ -314,7 +342,8 @@ TEST(RunLog, NamesWhatFails) {
   const TemporaryFolder folder;
   RunLog("", false).write({});
   EXPECT_EQ(thrown([] { RunLog full("/dev/full", false); }), "74 cannot write '/dev/full': No space left on device");
-  EXPECT_EQ(thrown([&] { RunLog none(folder.file("a/b"), false); }), "73 cannot create '" + folder.file("a/b") + "': No such file or directory");
+  EXPECT_EQ(thrown([&] { RunLog none(folder.file("a/b"), false); }),
+            "73 cannot create '" + folder.file("a/b") + "': No such file or directory");
 }
 
 // Files of version 1 keep loading: these were written by the first release.

@@ -14,10 +14,13 @@ std::string refused(const std::string& text) {
 }
 
 const char kFull[] =
-    "run\tworld\twindow\tmethod\tseed\tupdates\teval_seed\tfirst_episode\tenv\ttask\tseen\tepisodes\tsuccesses\twrong\ttimeouts\t"
+    "run\tworld\twindow\tmethod\tseed\tupdates\teval_seed\tfirst_"
+    "episode\tenv\ttask\tseen\tepisodes\tsuccesses\twrong\ttimeouts\t"
     "reward\tlength\tpart\thost\n"
-    "00000000000000aa\tgridworld\t1\tsynpo\t9223372036854775807\t20000\t7\t50\tmap1\tR-B\t1\t50\t40\t4\t6\t391.27\t1834\tP\tn1\n"
-    "00000000000000aa\tgridworld\t1\tsynpo\t9223372036854775807\t20000\t7\t0\tmap1\tB-G\t0\t50\t0\t50\t0\t-507.3\t850\t\t\n";
+    "00000000000000aa\tgridworld\t1\tsynpo\t9223372036854775807\t20000\t7\t50\tmap1\tR-B\t1\t50\t40\t4\t6\t391."
+    "27\t1834\tP\tn1\n"
+    "00000000000000aa\tgridworld\t1\tsynpo\t9223372036854775807\t20000\t7\t0\tmap1\tB-G\t0\t50\t0\t50\t0\t-507."
+    "3\t850\t\t\n";
 
 TEST(Matrix, EveryColumnComesBack) {
   const Matrix matrix = matrix_of(kFull);
@@ -73,25 +76,30 @@ TEST(Matrix, RefusesHostileRows) {
             "65 IN: line 2, column 3 ('episodes'): found '0', expected a whole number from 1 to 1000000000000");
   EXPECT_EQ(row_refused("a\tb\t10\t5\t-1\t0\t0\t0\t1\t\t1"),
             "65 IN: line 2, column 5 ('wrong'): found '-1', expected a whole number from 0 to 1000000000000");
-  EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\tnan\t0\t1\t\t1"), "65 IN: line 2, column 7 ('reward'): found 'nan', expected a finite number");
+  EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\tnan\t0\t1\t\t1"),
+            "65 IN: line 2, column 7 ('reward'): found 'nan', expected a finite number");
   EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\t1e300\t0\t1\t\t1"),
             "65 IN: line 2, column 7 ('reward'): found '1e300', expected a sum between -1e15 and 1e15");
   EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\t0\t0.5\t1\t\t1"),
             "65 IN: line 2, column 8 ('length'): found '0.5', expected a whole number from 0 to 1000000000000");
   EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\t0\t0\ttrue\t\t1"),
             "65 IN: line 2, column 9 ('seen'): found 'true', expected a whole number from 0 to 1");
-  EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\t0\t0\t1\tp\t1"), "65 IN: line 2, column 10 ('part'): found 'p', expected P, Q, rest or nothing");
+  EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\t0\t0\t1\tp\t1"),
+            "65 IN: line 2, column 10 ('part'): found 'p', expected P, Q, rest or nothing");
   EXPECT_EQ(row_refused("a\tb\t10\t5\t1\t0\t0\t0\t1\tP\t-1"),
             "65 IN: line 2, column 11 ('seed'): found '-1', expected a whole number, at least 0");
-  EXPECT_EQ(row_refused("\tb\t10\t5\t1\t0\t0\t0\t1\tP\t1"), "65 IN: line 2, column 1 ('env'): found '', expected the name of an environment");
+  EXPECT_EQ(row_refused("\tb\t10\t5\t1\t0\t0\t0\t1\tP\t1"),
+            "65 IN: line 2, column 1 ('env'): found '', expected the name of an environment");
 }
 
 TEST(Matrix, RefusesMissingColumnsRepeatedRowsAndNoRows) {
   EXPECT_EQ(refused("env\ttask\tepisodes\n"), "65 IN: line 1: no column 'successes', found 'env', 'task', 'episodes'");
-  EXPECT_EQ(refused("env\ttask\tepisodes\tsuccesses\n"), "65 IN: line 1: found a header and no row, expected at least one pair");
+  EXPECT_EQ(refused("env\ttask\tepisodes\tsuccesses\n"),
+            "65 IN: line 1: found a header and no row, expected at least one pair");
   EXPECT_EQ(refused("env\ttask\tepisodes\tsuccesses\na\tb\t9\t1\na\tc\t9\t1\na\tb\t9\t1\n"),
             "65 IN: line 4: pair 'a', 'b' from episode 0 on stands in line 2 already (same run and eval_seed)");
-  EXPECT_EQ(refused("env\ttask\tepisodes\tsuccesses\tseed\na\tb\t9\t1\t1\na\tb\t9\t1\t2\n"), "nothing thrown") << "two runs made by hand";
+  EXPECT_EQ(refused("env\ttask\tepisodes\tsuccesses\tseed\na\tb\t9\t1\t1\na\tb\t9\t1\t2\n"), "nothing thrown")
+      << "two runs made by hand";
   EXPECT_EQ(refused("env\ttask\tepisodes\tsuccesses\tfirst_episode\na\tb\t9\t1\t0\na\tb\t9\t1\t9\n"), "nothing thrown");
 }
 
@@ -105,7 +113,9 @@ TEST(Matrix, WriterRefusesNamesThatWouldBreakTheTable) {
   Matrix matrix;
   matrix.rows.resize(1);
   matrix.rows[0].env = "a\nb";
-  EXPECT_TRUE(thrown([&] { written([&](Output& output) { write_matrix(output, matrix); }); }).starts_with("65 the name 'a\\x0ab' holds"));
+  EXPECT_TRUE(thrown([&] {
+                written([&](Output& output) { write_matrix(output, matrix); });
+              }).starts_with("65 the name 'a\\x0ab' holds"));
 }
 
 }  // namespace

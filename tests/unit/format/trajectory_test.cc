@@ -48,10 +48,11 @@ void expect_equal(const Trajectory& a, const Trajectory& b) {
 }
 
 TEST(Trajectory, IsOneLineOfPlainJson) {
-  EXPECT_EQ(format_trajectory(short_trajectory()),
-            R"({"format":"synpo-trajectory","version":1,"world":"gridworld","rules":1,"env":"map3","task":"R-B","env_hash":"fedcba9876543210",)"
-            R"("window":2,"seed":18446744073709551615,"episode":9223372036854775807,"start":{"R":[1,14],"agent":[3,4]},"actions":[0,4,3],)"
-            R"("labels":[0,4,1],"rewards":[-0.01,0.99,10.99],"return":11.97,"success":true,"terminated":true,"truncated":false})");
+  EXPECT_EQ(
+      format_trajectory(short_trajectory()),
+      R"({"format":"synpo-trajectory","version":1,"world":"gridworld","rules":1,"env":"map3","task":"R-B","env_hash":"fedcba9876543210",)"
+      R"("window":2,"seed":18446744073709551615,"episode":9223372036854775807,"start":{"R":[1,14],"agent":[3,4]},"actions":[0,4,3],)"
+      R"("labels":[0,4,1],"rewards":[-0.01,0.99,10.99],"return":11.97,"success":true,"terminated":true,"truncated":false})");
 }
 
 TEST(Trajectory, ComesBack) {
@@ -87,7 +88,8 @@ TEST(Trajectory, UnknownFieldsArePassedOver) {
 }
 
 TEST(Trajectory, RefusesWhatIsNoObject) {
-  for (const char* line : {"", "x", "{", "[]", "3", "null", "\"text\"", "{\"format\":}", "{} {}", "{\"a\":\"\xff\"}", "NaN"})
+  for (const char* line :
+       {"", "x", "{", "[]", "3", "null", "\"text\"", "{\"format\":}", "{} {}", "{\"a\":\"\xff\"}", "NaN"})
     EXPECT_EQ(refused(line), "65 found " + quoted(line) + ", expected a JSON object");
   const std::string good = format_trajectory(short_trajectory());
   for (size_t size = 0; size < good.size(); ++size)
@@ -107,13 +109,14 @@ TEST(Trajectory, DeepNestingIsRefusedEarly) {
 TEST(Trajectory, OtherVersionsAndFormatsAreNamed) {
   EXPECT_EQ(refused(with("version", "2")), "65 version 2, this build reads 1 to 1");
   EXPECT_EQ(refused(with("version", "0")), "65 version 0, this build reads 1 to 1");
-  EXPECT_EQ(refused(with("version", "\"1\"")), "65 field 'version': found '\"1\"', expected a whole number from 0 to 2147483647");
+  EXPECT_EQ(refused(with("version", "\"1\"")),
+            "65 field 'version': found '\"1\"', expected a whole number from 0 to 2147483647");
   EXPECT_EQ(refused(with("format", "\"minari\"")), "65 field 'format': found '\"minari\"', expected synpo-trajectory");
 }
 
 TEST(Trajectory, MissingFieldsAreNamed) {
-  for (const char* field : {"format", "version", "world", "rules", "env", "task", "env_hash", "window", "seed", "episode", "start", "actions", "rewards",
-                            "success", "terminated", "truncated"})
+  for (const char* field : {"format", "version", "world", "rules", "env", "task", "env_hash", "window", "seed",
+                            "episode", "start", "actions", "rewards", "success", "terminated", "truncated"})
     EXPECT_EQ(refused(with(field, "")), concat("65 no field '", field, "'"));
 }
 
@@ -124,19 +127,24 @@ TEST(Trajectory, WrongKindsAreNamed) {
       EXPECT_EQ(refused(with(field, value)), concat("65 field '", field, "': found '", value, "', expected a string"));
   for (const char* field : {"success", "terminated", "truncated"})
     for (const char* value : {"1", "\"true\"", "null"})
-      EXPECT_EQ(refused(with(field, value)), concat("65 field '", field, "': found ", quoted(value), ", expected true or false"));
+      EXPECT_EQ(refused(with(field, value)),
+                concat("65 field '", field, "': found ", quoted(value), ", expected true or false"));
   for (const char* field : {"rules", "window", "episode"})
     for (const char* value : {"-1", "1.5", "1e3", "\"1\"", "null", "[1]", "9223372036854775808", "1e999"}) {
       const std::string message = refused(with(field, value));
-      EXPECT_TRUE(message.starts_with(concat("65 field '", field, "': found ")) || message.ends_with("expected a JSON object")) << message;
+      EXPECT_TRUE(message.starts_with(concat("65 field '", field, "': found ")) ||
+                  message.ends_with("expected a JSON object"))
+          << message;
     }
   EXPECT_EQ(refused(with("seed", "-1")), "65 field 'seed': found '-1', expected a whole number from 0");
-  EXPECT_EQ(refused(with("seed", "18446744073709551616")), "65 field 'seed': found '1.8446744073709552e+19', expected a whole number from 0");
+  EXPECT_EQ(refused(with("seed", "18446744073709551616")),
+            "65 field 'seed': found '1.8446744073709552e+19', expected a whole number from 0");
   EXPECT_EQ(refused(with("window", "1001")), "65 field 'window': found '1001', expected a whole number from 0 to 1000");
   EXPECT_EQ(refused(with("env_hash", "\"12\"")), "65 found '12', expected a hash of 16 hexadecimal digits");
   EXPECT_EQ(refused(with("start", "[1,2]")), "65 field 'start': found '[1,2]', expected an object of places");
   EXPECT_EQ(refused(with("start", R"({"agent":[1]})")), "65 field 'start': found '[1]', expected [row, column]");
-  EXPECT_EQ(refused(with("start", R"({"agent":[1,-2000000]})")), "65 field 'start': found '-2000000', expected a whole number from -1048576 to 1048576");
+  EXPECT_EQ(refused(with("start", R"({"agent":[1,-2000000]})")),
+            "65 field 'start': found '-2000000', expected a whole number from -1048576 to 1048576");
 }
 
 std::string array_of(size_t size, const std::string& value) {
@@ -146,13 +154,17 @@ std::string array_of(size_t size, const std::string& value) {
 }
 
 TEST(Trajectory, ActionsAndRewardsAreHeldToTheirBounds) {
-  EXPECT_EQ(refused(with("actions", "[0,256,1]")), "65 field 'actions': found '256', expected a whole number from 0 to 255");
-  EXPECT_EQ(refused(with("actions", "[0,-1,1]")), "65 field 'actions': found '-1', expected a whole number from 0 to 255");
+  EXPECT_EQ(refused(with("actions", "[0,256,1]")),
+            "65 field 'actions': found '256', expected a whole number from 0 to 255");
+  EXPECT_EQ(refused(with("actions", "[0,-1,1]")),
+            "65 field 'actions': found '-1', expected a whole number from 0 to 255");
   EXPECT_EQ(refused(with("actions", "[]")), "65 field 'actions': found '[]', expected an array of 1 to 300 actions");
   EXPECT_TRUE(refused(with("actions", array_of(301, "0"))).ends_with("expected an array of 1 to 300 actions"));
-  EXPECT_EQ(refused(with("actions", "{\"0\":1}")), "65 field 'actions': found '{\"0\":1}', expected an array of 1 to 300 actions");
+  EXPECT_EQ(refused(with("actions", "{\"0\":1}")),
+            "65 field 'actions': found '{\"0\":1}', expected an array of 1 to 300 actions");
   EXPECT_EQ(refused(with("labels", "[0,1]")), "65 found 2 labels for 3 actions");
-  EXPECT_EQ(refused(with("labels", "[0,1,999]")), "65 field 'labels': found '999', expected a whole number from 0 to 255");
+  EXPECT_EQ(refused(with("labels", "[0,1,999]")),
+            "65 field 'labels': found '999', expected a whole number from 0 to 255");
   EXPECT_EQ(refused(with("rewards", "[-0.01]")), "65 field 'rewards': found '[-0.01]', expected an array of 3 rewards");
   EXPECT_EQ(refused(with("rewards", "[0,0,0.005]")), "65 field 'rewards': found '0.005', expected a multiple of 0.01");
   EXPECT_EQ(refused(with("rewards", "[0,0,1e300]")), "65 field 'rewards': found '1e+300', expected a multiple of 0.01");
@@ -185,7 +197,8 @@ TEST(GoldenV1, Trajectories) {
   const std::string text = contents("tests/data/v1/trajectories.jsonl");
   const size_t middle = text.find('\n');
   ASSERT_NE(middle, std::string::npos);
-  const Trajectory first = parsed(text.substr(0, middle)), second = parsed(text.substr(middle + 1, text.size() - middle - 2));
+  const Trajectory first = parsed(text.substr(0, middle)),
+                   second = parsed(text.substr(middle + 1, text.size() - middle - 2));
   EXPECT_EQ(first.env + " " + first.task, "map2 P-O");
   EXPECT_EQ(first.env_hash, 0x65e773aea34ee04fu);
   EXPECT_EQ(first.start.at("agent"), (std::pair{3, 1}));

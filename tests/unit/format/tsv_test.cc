@@ -42,23 +42,31 @@ TEST(Tsv, RefusesWhatIsNoTable) {
   EXPECT_EQ(refused("\n"), "65 IN: line 1, column 1: found an empty name, expected the name of a column");
   EXPECT_EQ(refused("a\t\tb\n"), "65 IN: line 1, column 2: found an empty name, expected the name of a column");
   EXPECT_EQ(refused("a\tb\ta\n"), "65 IN: line 1, column 3: the name 'a' stands there twice");
-  EXPECT_EQ(refused("\xef\xbb\xbf" "a\n"), "65 IN: line 1, column 1: found a byte order mark, expected plain UTF-8 without one");
+  EXPECT_EQ(refused("\xef\xbb\xbf"
+                    "a\n"),
+            "65 IN: line 1, column 1: found a byte order mark, expected plain UTF-8 without one");
   EXPECT_EQ(refused("a\tb\r\n1\t2\r\n"),
             "65 IN: line 1: ends in CR LF, expected LF alone: take the CRs out first, for instance with tr -d '\\r'");
   EXPECT_EQ(refused("a\tb\n1\t2\r\n"),
             "65 IN: line 2: ends in CR LF, expected LF alone: take the CRs out first, for instance with tr -d '\\r'");
   EXPECT_EQ(refused("a\tb\n1\t2\n3\t45"), "65 IN: line 3: found no line end, expected LF: was the file cut off?");
-  EXPECT_EQ(refused("a\tb\n1\n"), "65 IN: line 2: found 1 field, expected 2 as in the header (fields are separated by one tab each)");
-  EXPECT_EQ(refused("a\tb\n1\t2\t3\n"), "65 IN: line 2: found 3 fields, expected 2 as in the header (fields are separated by one tab each)");
+  EXPECT_EQ(refused("a\tb\n1\n"),
+            "65 IN: line 2: found 1 field, expected 2 as in the header (fields are separated by one tab each)");
+  EXPECT_EQ(refused("a\tb\n1\t2\t3\n"),
+            "65 IN: line 2: found 3 fields, expected 2 as in the header (fields are separated by one tab each)");
   EXPECT_EQ(refused("a\tb\n1\t2\n\n"), "65 IN: line 3: found an empty line, expected 2 fields as in the header");
 }
 
 TEST(Tsv, RefusesBytesThatAreNoText) {
-  for (const char* bad : {"\xff", "\x80", "\xc0\x80", "\xc3", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xf0\x80\x80\x80", "\xf5\x80\x80\x80",
-                          "\xe2\x82"})
-    EXPECT_TRUE(refused(std::string("a\tb\n1\tx") + bad + "\n").starts_with("65 IN: line 2, column 2: found invalid UTF-8 at byte \\x")) << bad;
-  EXPECT_EQ(refused(std::string("a\tb\n\0\t2\n", 8)), "65 IN: line 2, column 1: found control character \\x00, expected UTF-8 text");
-  EXPECT_EQ(refused("a\tb\n1\t\x1b[31m\n"), "65 IN: line 2, column 2: found control character \\x1b, expected UTF-8 text");
+  for (const char* bad : {"\xff", "\x80", "\xc0\x80", "\xc3", "\xe0\x80\x80", "\xed\xa0\x80", "\xf4\x90\x80\x80",
+                          "\xf0\x80\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82"})
+    EXPECT_TRUE(refused(std::string("a\tb\n1\tx") + bad + "\n")
+                    .starts_with("65 IN: line 2, column 2: found invalid UTF-8 at byte \\x"))
+        << bad;
+  EXPECT_EQ(refused(std::string("a\tb\n\0\t2\n", 8)),
+            "65 IN: line 2, column 1: found control character \\x00, expected UTF-8 text");
+  EXPECT_EQ(refused("a\tb\n1\t\x1b[31m\n"),
+            "65 IN: line 2, column 2: found control character \\x1b, expected UTF-8 text");
 }
 
 TEST(Tsv, RefusesAMillionColumns) {
@@ -80,20 +88,26 @@ std::string number_refused(const std::string& field, bool real) {
 
 TEST(Tsv, RefusesWhatIsNoNumber) {
   for (const char* field : {"", "-1", "100", "1.0", "1e1", " 1", "1 ", "+1", "0x1", "99999999999999999999", "one"})
-    EXPECT_EQ(number_refused(field, false),
-              std::string("65 IN: line 2, column 2 ('n'): found '") + field + "', expected a whole number from 0 to 99");
+    EXPECT_EQ(number_refused(field, false), std::string("65 IN: line 2, column 2 ('n'): found '") + field +
+                                                "', expected a whole number from 0 to 99");
   for (const char* field : {"", "nan", "NaN", "inf", "-inf", "1e999", "1,5", "0x1p3", " 1", "NA"})
-    EXPECT_EQ(number_refused(field, true), std::string("65 IN: line 2, column 2 ('n'): found '") + field + "', expected a finite number");
+    EXPECT_EQ(number_refused(field, true),
+              std::string("65 IN: line 2, column 2 ('n'): found '") + field + "', expected a finite number");
   EXPECT_EQ(number_refused("99", false), "nothing thrown");
   EXPECT_EQ(number_refused("-1.5e-3", true), "nothing thrown");
 }
 
 TEST(Tsv, NumbersReadBackAsTheSame) {
-  const double values[] = {0.1, -0.0, 1.0 / 3, 978.37, 1e15, 5e-324, std::numeric_limits<double>::max(), 123456789.123456789};
+  const double values[] = {
+      0.1, -0.0, 1.0 / 3, 978.37, 1e15, 5e-324, std::numeric_limits<double>::max(), 123456789.123456789};
   const std::string text = written([&](Output& output) {
     TsvWriter writer(output);
     writer.text("r").text("i").text("u").end_row();
-    for (double value : values) writer.real(value).whole(std::numeric_limits<int64_t>::min()).whole(std::numeric_limits<uint64_t>::max()).end_row();
+    for (double value : values)
+      writer.real(value)
+          .whole(std::numeric_limits<int64_t>::min())
+          .whole(std::numeric_limits<uint64_t>::max())
+          .end_row();
   });
   read_text(text, [&](Input& input) {
     TsvReader reader(input);
@@ -111,7 +125,10 @@ TEST(Tsv, NumbersReadBackAsTheSame) {
 
 TEST(Tsv, WriterRefusesNamesThatWouldBreakTheTable) {
   for (const char* name : {"a\tb", "a\nb", "a\rb", "a\xff"})
-    EXPECT_TRUE(thrown([&] { written([&](Output& output) { TsvWriter(output).text(name); }); }).starts_with("65 the name 'a\\x")) << name;
+    EXPECT_TRUE(thrown([&] {
+                  written([&](Output& output) { TsvWriter(output).text(name); });
+                }).starts_with("65 the name 'a\\x"))
+        << name;
   EXPECT_EQ(thrown([] { written([](Output& output) { TsvWriter(output).text("a\tb"); }); }),
             "65 the name 'a\\x09b' holds a tab, a line end or bytes that are no text, and cannot stand in a table");
 }
@@ -136,16 +153,24 @@ TEST(Pairs, RefusesWhatIsNoPairs) {
   EXPECT_EQ(refused_pairs("env\n"), "65 IN: line 1: no column 'task', found 'env'");
   EXPECT_EQ(refused_pairs("env\ttask\n"), "65 IN: line 1: found a header and no row, expected at least one pair");
   EXPECT_EQ(refused_pairs("env\ttask\na\tb\nc\td\na\tb\n"), "65 IN: line 4: pair 'a', 'b' stands in line 2 already");
-  EXPECT_EQ(refused_pairs("env\ttask\tseen\na\tb\tyes\n"), "65 IN: line 2, column 3 ('seen'): found 'yes', expected a whole number from 0 to 1");
-  EXPECT_EQ(refused_pairs("env\ttask\tpart\na\tb\tR\n"), "65 IN: line 2, column 3 ('part'): found 'R', expected P, Q, rest or nothing");
-  EXPECT_EQ(refused_pairs("env\ttask\n\tb\n"), "65 IN: line 2, column 1 ('env'): found '', expected the name of an environment");
-  EXPECT_EQ(refused_pairs("env\ttask\na\t\n"), "65 IN: line 2, column 2 ('task'): found '', expected the name of a task");
+  EXPECT_EQ(refused_pairs("env\ttask\tseen\na\tb\tyes\n"),
+            "65 IN: line 2, column 3 ('seen'): found 'yes', expected a whole number from 0 to 1");
+  EXPECT_EQ(refused_pairs("env\ttask\tpart\na\tb\tR\n"),
+            "65 IN: line 2, column 3 ('part'): found 'R', expected P, Q, rest or nothing");
+  EXPECT_EQ(refused_pairs("env\ttask\n\tb\n"),
+            "65 IN: line 2, column 1 ('env'): found '', expected the name of an environment");
+  EXPECT_EQ(refused_pairs("env\ttask\na\t\n"),
+            "65 IN: line 2, column 2 ('task'): found '', expected the name of a task");
 }
 
 TEST(Pairs, WritesThePartOnlyWhereThereIsOne) {
-  EXPECT_EQ(written([](Output& output) { write_pairs(output, {{"a", "b", true, ""}, {"a", "c", false, ""}}); }),
+  EXPECT_EQ(written([](Output& output) {
+              write_pairs(output, {{"a", "b", true, ""}, {"a", "c", false, ""}});
+            }),
             "env\ttask\tseen\na\tb\t1\na\tc\t0\n");
-  const std::string text = written([](Output& output) { write_pairs(output, {{"a", "b", true, "P"}, {"a", "c", false, ""}}); });
+  const std::string text = written([](Output& output) {
+    write_pairs(output, {{"a", "b", true, "P"}, {"a", "c", false, ""}});
+  });
   EXPECT_EQ(text, "env\ttask\tseen\tpart\na\tb\t1\tP\na\tc\t0\t\n");
   EXPECT_EQ(pairs_of(text)[0].part, "P");
 }

@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "play/episode.h"
 #include "learn/memory.h"
+#include "play/episode.h"
 #include "world/grid/grid_set.h"
 #include "world/grid/view.h"
 

@@ -39,9 +39,9 @@ inline KitchenSeenLists seen_lists(const std::vector<std::vector<KitchenSeen>>& 
   return all;
 }
 
-// Five poses in a ring that rotating right walks along and rotating left back; nothing else moves. From pose 0 nothing is in sight, from 1 slots 2 and 1,
-// equally near, and behind them 0; from 2 the Sink and behind it the Fridge; from 3 the Fridge, the Microwave behind it and slot 3; from 4 the
-// Microwave.
+// Five poses in a ring that rotating right walks along and rotating left back; nothing else moves. From pose 0 nothing
+// is in sight, from 1 slots 2 and 1, equally near, and behind them 0; from 2 the Sink and behind it the Fridge; from 3
+// the Fridge, the Microwave behind it and slot 3; from 4 the Microwave.
 inline KitchenTables ring_tables() {
   KitchenTables tables;
   for (int16_t i = 0; i < 5; ++i) {
@@ -52,7 +52,8 @@ inline KitchenTables ring_tables() {
   for (int16_t i = 0; i < 10; ++i) tables.slots.push_back({2, i});
   auto sight = std::make_shared<KitchenSight>();
   sight->slots = seen_lists({{}, {{100, 1}, {100, 2}, {200, 0}}, {}, {{900, 3}}, {}});
-  sight->receptacles = seen_lists({{}, {}, {{500, kSink}, {700, kFridge}}, {{300, kFridge}, {400, kMicrowave}}, {{100, kMicrowave}}});
+  sight->receptacles =
+      seen_lists({{}, {}, {{500, kSink}, {700, kFridge}}, {{300, kFridge}, {400, kMicrowave}}, {{100, kMicrowave}}});
   tables.sight.fill(sight);
   return tables;
 }

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "play/model.h"
 #include "helpers/numbers.h"
+#include "play/model.h"
 #include "policy/policy.h"
 #include "world/grid/grid_set.h"
 #include "world/grid/view.h"
@@ -82,12 +82,14 @@ struct Network {
     const int shards = shard_count(batch.size, at_once);
     parallel.run(shards, [&](int shard, int thread) {
       const Range range = shard_range(batch.size, at_once, shard);
-      policy->infer(thread, range.size(), batch.observations + range.begin * policy->observation_size(), numbers.data() + range.begin,
-                    scores.data() + size_t(range.begin) * actions);
+      policy->infer(thread, range.size(), batch.observations + range.begin * policy->observation_size(),
+                    numbers.data() + range.begin, scores.data() + size_t(range.begin) * actions);
     });
     return scores;
   }
-  void initialise(const InitOptions& options = {3, 1}) { policy->initialise(options, parameters.data(), statistics.data()); }
+  void initialise(const InitOptions& options = {3, 1}) {
+    policy->initialise(options, parameters.data(), statistics.data());
+  }
   // Biases are zero at first, and scales one: nothing is after this.
   void shake() {
     const std::vector<double> by = random_values<double>(parameters.size(), 8);
@@ -95,7 +97,9 @@ struct Network {
       for (size_t i = tensor.offset; i < tensor.offset + tensor.size; ++i) parameters[i] += T(0.2 * by[i]);
   }
   T* parameter(const std::string& name) { return parameters.data() + policy->parameters().find(name)->offset; }
-  const T* gradient_of(const std::string& name) const { return gradient.data() + policy->parameters().find(name)->offset; }
+  const T* gradient_of(const std::string& name) const {
+    return gradient.data() + policy->parameters().find(name)->offset;
+  }
 
   std::unique_ptr<Policy<T>> policy;
   int actions;
@@ -133,9 +137,11 @@ inline PolicyShape tiny_shape_for(const World& world) {
   return shape;
 }
 
-// Holds the gradient, of the tensors for which `chosen(name)`, to finite differences of what `value(losses)` makes of a step's losses.
+// Holds the gradient, of the tensors for which `chosen(name)`, to finite differences of what `value(losses)` makes of a
+// step's losses.
 template <class Value, class Chosen>
-void expect_finite_differences(Network<double>& net, const StepBatch<double>& batch, const LossWeights& weights, Value value, Chosen chosen) {
+void expect_finite_differences(Network<double>& net, const StepBatch<double>& batch, const LossWeights& weights,
+                               Value value, Chosen chosen) {
   Parallel parallel(1);
   const std::vector<double> statistics = net.statistics;
   const auto loss = [&] {
@@ -144,8 +150,9 @@ void expect_finite_differences(Network<double>& net, const StepBatch<double>& ba
   };
   const double here = loss();
   const std::vector<double> gradient = net.gradient;
-  // A ReLU that changes sign within the step would bend the loss: the slopes to both sides then differ by a part of the gradient, where
-  // without they differ by the step times the curvature. The step is so small that none does, and the slopes are held to that.
+  // A ReLU that changes sign within the step would bend the loss: the slopes to both sides then differ by a part of the
+  // gradient, where without they differ by the step times the curvature. The step is so small that none does, and the
+  // slopes are held to that.
   constexpr double kStep = 1e-7;
   Random random(1, Purpose::kInit, 9);
   int checked = 0;
@@ -166,8 +173,10 @@ void expect_finite_differences(Network<double>& net, const StepBatch<double>& ba
       net.parameters[at] = kept - kStep;
       const double left = (here - loss()) / kStep;
       net.parameters[at] = kept;
-      ASSERT_NEAR(left, right, 1e-3 * (norm + std::abs(gradient[at]))) << tensor.name << ": a ReLU near zero? take another seed";
-      ASSERT_NEAR(gradient[at], (left + right) / 2, 1e-5 * (norm + std::abs(gradient[at]))) << tensor.name << " at " << at - tensor.offset;
+      ASSERT_NEAR(left, right, 1e-3 * (norm + std::abs(gradient[at])))
+          << tensor.name << ": a ReLU near zero? take another seed";
+      ASSERT_NEAR(gradient[at], (left + right) / 2, 1e-5 * (norm + std::abs(gradient[at])))
+          << tensor.name << " at " << at - tensor.offset;
     }
   }
   EXPECT_GT(checked, 0);

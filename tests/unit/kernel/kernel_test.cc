@@ -10,9 +10,9 @@
 #include <tuple>
 
 #include "base/error.h"
-#include "nn/gemm.h"
 #include "helpers/numbers.h"
 #include "helpers/targets.h"
+#include "nn/gemm.h"
 
 namespace synpo {
 namespace {
@@ -25,18 +25,24 @@ struct Strided {
   Strided(int row_count, int column_count, int gap, uint64_t seed)
       : rows(row_count), columns(column_count), stride(column_count + gap), values(size_t(rows) * stride, T(kNan)) {
     const std::vector<T> random = random_values<T>(size_t(rows) * columns, seed);
-    for (int r = 0; r < rows; ++r) std::copy_n(random.data() + size_t(r) * columns, columns, values.data() + size_t(r) * stride);
+    for (int r = 0; r < rows; ++r)
+      std::copy_n(random.data() + size_t(r) * columns, columns, values.data() + size_t(r) * stride);
   }
-  T at(Op op, int r, int c) const { return op == Op::kAsIs ? values[size_t(r) * stride + c] : values[size_t(c) * stride + r]; }
+  T at(Op op, int r, int c) const {
+    return op == Op::kAsIs ? values[size_t(r) * stride + c] : values[size_t(c) * stride + r];
+  }
   int rows, columns, stride;
   std::vector<T> values;
 };
 
 template <class T>
-void check_gemm(const NamedKernels<T>& target, Op op_a, Op op_b, int m, int n, int k, bool accumulate, int gap, uint64_t seed) {
-  SCOPED_TRACE(testing::Message() << target.name << ": " << m << " x " << n << " x " << k << " ops " << int(op_a) << int(op_b) << " gap " << gap << " accumulate " << accumulate);
+void check_gemm(const NamedKernels<T>& target, Op op_a, Op op_b, int m, int n, int k, bool accumulate, int gap,
+                uint64_t seed) {
+  SCOPED_TRACE(testing::Message() << target.name << ": " << m << " x " << n << " x " << k << " ops " << int(op_a)
+                                  << int(op_b) << " gap " << gap << " accumulate " << accumulate);
   const bool as_is_a = op_a == Op::kAsIs, as_is_b = op_b == Op::kAsIs;
-  const Strided<T> a(as_is_a ? m : k, as_is_a ? k : m, gap, seed), b(as_is_b ? k : n, as_is_b ? n : k, 2 * gap, seed + 1);
+  const Strided<T> a(as_is_a ? m : k, as_is_a ? k : m, gap, seed),
+      b(as_is_b ? k : n, as_is_b ? n : k, 2 * gap, seed + 1);
   Strided<T> c(m, n, gap, seed + 2);
   const Strided<T> before = c;
   if (!accumulate)
@@ -53,9 +59,12 @@ void check_gemm(const NamedKernels<T>& target, Op op_a, Op op_b, int m, int n, i
         sum += product;
         size += std::abs(product);
       }
-      ASSERT_NEAR(double(c.at(Op::kAsIs, i, j)), sum, size * (kernels.product_error + std::numeric_limits<T>::epsilon() * (4 + std::sqrt(k)))) << i << ", " << j;
+      ASSERT_NEAR(double(c.at(Op::kAsIs, i, j)), sum,
+                  size * (kernels.product_error + std::numeric_limits<T>::epsilon() * (4 + std::sqrt(k))))
+          << i << ", " << j;
     }
-    for (int j = n; j < c.stride; ++j) ASSERT_TRUE(std::isnan(double(c.values[size_t(i) * c.stride + j]))) << "written behind row " << i;
+    for (int j = n; j < c.stride; ++j)
+      ASSERT_TRUE(std::isnan(double(c.values[size_t(i) * c.stride + j]))) << "written behind row " << i;
   }
 }
 
@@ -85,7 +94,8 @@ TEST(Gemm, SizesAroundMultiplesOfVectors) {
       check_gemms<float>(near + off, 64, 290, 0, 4);
       check_gemms<float>(25, 32, near + off, 3, 3);
     }
-  for (const auto& [m, n, k] : {std::tuple(1, 1, 1), std::tuple(1, 70, 70), std::tuple(70, 1, 70), std::tuple(70, 70, 1), std::tuple(1, 1, 300)})
+  for (const auto& [m, n, k] : {std::tuple(1, 1, 1), std::tuple(1, 70, 70), std::tuple(70, 1, 70),
+                                std::tuple(70, 70, 1), std::tuple(1, 1, 300)})
     check_gemms<float>(m, n, k, 1, 4);
 }
 
@@ -146,7 +156,8 @@ TEST(Gemm, ThreadsPackToTheSameBytes) {
         together.pack(parallel, op, k, n, b.data(), stride);
         EXPECT_EQ(together.k(), k);
         EXPECT_EQ(together.n(), n);
-        EXPECT_EQ(std::memcmp(together.data(), alone.data(), kernels<float>().packed_size(k, n) * sizeof(float)), 0) << k << " x " << n;
+        EXPECT_EQ(std::memcmp(together.data(), alone.data(), kernels<float>().packed_size(k, n) * sizeof(float)), 0)
+            << k << " x " << n;
       }
   });
 }
@@ -161,7 +172,8 @@ TEST(Gemm, NothingToSumIsZero) {
 
 TEST(Gemm, IsEigensProductOnOddSizes) {
   using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  for (const auto& [m, n, k] : {std::tuple(7, 13, 29), std::tuple(61, 33, 259), std::tuple(129, 65, 31), std::tuple(1, 127, 513)}) {
+  for (const auto& [m, n, k] :
+       {std::tuple(7, 13, 29), std::tuple(61, 33, 259), std::tuple(129, 65, 31), std::tuple(1, 127, 513)}) {
     const std::vector<float> a = random_values<float>(size_t(m) * k, 1), b = random_values<float>(size_t(k) * n, 2);
     const Eigen::Map<const Matrix> left(a.data(), m, k), right(b.data(), k, n);
     const Matrix want = left * right;
@@ -172,7 +184,8 @@ TEST(Gemm, IsEigensProductOnOddSizes) {
       target.kernels->pack(Op::kAsIs, k, n, b.data(), n, packed.grow(target.kernels->packed_size(k, n)));
       target.kernels->multiply(Op::kAsIs, m, n, k, a.data(), k, packed.data(), got.data(), n, false);
       const double bound = target.kernels->product_error + 0x1p-23 * (4 + std::sqrt(k));
-      for (int i = 0; i < m * n; ++i) ASSERT_NEAR(got[i], want.data()[i], bound * size.data()[i]) << target.name << " at " << i;
+      for (int i = 0; i < m * n; ++i)
+        ASSERT_NEAR(got[i], want.data()[i], bound * size.data()[i]) << target.name << " at " << i;
     }
   }
 }
@@ -217,21 +230,29 @@ TYPED_TEST(Rows, AreTheirDefinitions) {
       constexpr size_t kRows = 67;
       const size_t size = kRows * channels;
       const Kernels<T>& k = *target.kernels;
-      const std::vector<T> z = random_values<T>(size, 1), other = random_values<T>(size, 2), d = random_values<T>(size, 3),
-                           scale = random_values<T>(channels, 4), offset = random_values<T>(channels, 5), mean = random_values<T>(channels, 6),
+      const std::vector<T> z = random_values<T>(size, 1), other = random_values<T>(size, 2),
+                           d = random_values<T>(size, 3), scale = random_values<T>(channels, 4),
+                           offset = random_values<T>(channels, 5), mean = random_values<T>(channels, 6),
                            by = random_values<T>(channels, 7);
-      std::vector<T> y(size), plain(size), scaled(size), masked = d, biased = z, summed(size), dz(size), dz_masked(size);
-      std::vector<double> sum(channels, 1), squares(channels, 2), dsum(channels, 3), products(channels, 4), msum(channels, 5), mproducts(channels, 6);
+      std::vector<T> y(size), plain(size), scaled(size), masked = d, biased = z, summed(size), dz(size),
+                                                         dz_masked(size);
+      std::vector<double> sum(channels, 1), squares(channels, 2), dsum(channels, 3), products(channels, 4),
+          msum(channels, 5), mproducts(channels, 6);
       k.norm_relu(kRows, channels, z.data(), scale.data(), offset.data(), y.data());
-      k.norm_add_relu(kRows, channels, z.data(), scale.data(), offset.data(), other.data(), nullptr, nullptr, plain.data());
-      k.norm_add_relu(kRows, channels, z.data(), scale.data(), offset.data(), other.data(), by.data(), mean.data(), scaled.data());
+      k.norm_add_relu(kRows, channels, z.data(), scale.data(), offset.data(), other.data(), nullptr, nullptr,
+                      plain.data());
+      k.norm_add_relu(kRows, channels, z.data(), scale.data(), offset.data(), other.data(), by.data(), mean.data(),
+                      scaled.data());
       k.relu_mask(size, masked.data(), y.data());
       k.add_bias(int(kRows), channels, offset.data(), true, biased.data());
       k.add_moments(kRows, channels, z.data(), mean.data(), sum.data(), squares.data());
       k.add_products(kRows, channels, d.data(), z.data(), mean.data(), dsum.data(), products.data());
-      k.add_masked_products(kRows, channels, d.data(), z.data(), mean.data(), scale.data(), offset.data(), msum.data(), mproducts.data());
-      k.norm_backward(kRows, channels, d.data(), z.data(), by.data(), mean.data(), offset.data(), nullptr, nullptr, dz.data());
-      k.norm_backward(kRows, channels, d.data(), z.data(), by.data(), mean.data(), offset.data(), scale.data(), offset.data(), dz_masked.data());
+      k.add_masked_products(kRows, channels, d.data(), z.data(), mean.data(), scale.data(), offset.data(), msum.data(),
+                            mproducts.data());
+      k.norm_backward(kRows, channels, d.data(), z.data(), by.data(), mean.data(), offset.data(), nullptr, nullptr,
+                      dz.data());
+      k.norm_backward(kRows, channels, d.data(), z.data(), by.data(), mean.data(), offset.data(), scale.data(),
+                      offset.data(), dz_masked.data());
       const T* from[2] = {z.data(), other.data()};
       const T factors[2] = {T(2), T(-0.5)};
       k.combine(2, from, factors, size, summed.data(), false);
@@ -268,7 +289,8 @@ TYPED_TEST(Rows, RmsPropAndSumsOfSquaresAreTheirDefinitions) {
       SCOPED_TRACE(testing::Message() << target.name << ", " << n << " values");
       const std::vector<T> gradient = random_values<T>(n, 1), start = random_values<T>(n, 2);
       std::vector<T> parameter = start, v(n, T(0.25));
-      target.kernels->rmsprop(n, {T(0.5), T(0.125), T(0.75), T(0.1), T(0.5)}, gradient.data(), parameter.data(), v.data());
+      target.kernels->rmsprop(n, {T(0.5), T(0.125), T(0.75), T(0.1), T(0.5)}, gradient.data(), parameter.data(),
+                              v.data());
       double squares = 0;
       for (size_t i = 0; i < n; ++i) {
         const double g = 0.5 * gradient[i] + 0.125 * start[i], mean = 0.75 * 0.25 + 0.25 * g * g;
@@ -285,7 +307,8 @@ TYPED_TEST(Rows, DotIsTheSumOfProducts) {
   for (const NamedKernels<T>& target : all_kernels<T>())
     for (int n = 0; n < 70; ++n) {
       const std::vector<T> a = random_values<T>(n, 1), b = random_values<T>(n, 2);
-      EXPECT_NEAR(target.kernels->dot(n, a.data(), b.data()), inner_product(a, b), (std::is_same_v<T, float> ? 1e-6 : 1e-14) * (n + 1));
+      EXPECT_NEAR(target.kernels->dot(n, a.data(), b.data()), inner_product(a, b),
+                  (std::is_same_v<T, float> ? 1e-6 : 1e-14) * (n + 1));
     }
 }
 
@@ -305,7 +328,9 @@ TEST(Kernels, ATargetIsChosen) {
   const auto all = all_kernels<float>();
   ASSERT_FALSE(all.empty());
   EXPECT_EQ(all.front().name, "plain");
-  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const auto& target) { return target.name == kernel_target() && target.kernels == &kernels<float>(); }));
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const auto& target) {
+    return target.name == kernel_target() && target.kernels == &kernels<float>();
+  }));
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ std::vector<float> tensor(const Model& model, const std::string& name) {
 std::vector<int> changed_rows(const std::vector<float>& a, const std::vector<float>& b, int width) {
   std::vector<int> rows;
   for (size_t row = 0; row * width < a.size(); ++row)
-    if (!std::equal(a.begin() + row * width, a.begin() + (row + 1) * width, b.begin() + row * width)) rows.push_back(int(row));
+    if (!std::equal(a.begin() + row * width, a.begin() + (row + 1) * width, b.begin() + row * width))
+      rows.push_back(int(row));
   return rows;
 }
 
@@ -57,7 +58,8 @@ TEST(Adapt, NewEmbeddingsAreLearnedAndNothingElseMovesByABit) {
   const Model& after = adaptation.model();
   const int width = after.shape.embedding;
   EXPECT_EQ(changed_rows(tensor(start, "embedding.env"), tensor(after, "embedding.env"), width), (std::vector<int>{3}));
-  for (const int row : changed_rows(tensor(start, "embedding.task"), tensor(after, "embedding.task"), width)) EXPECT_GT(row, 1);
+  for (const int row : changed_rows(tensor(start, "embedding.task"), tensor(after, "embedding.task"), width))
+    EXPECT_GT(row, 1);
   for (const TensorInfo& info : after.policy->parameters().tensors()) {
     if (info.name.starts_with("embedding.")) continue;
     EXPECT_EQ(tensor(after, info.name), tensor(start, info.name)) << info.name;
@@ -67,8 +69,8 @@ TEST(Adapt, NewEmbeddingsAreLearnedAndNothingElseMovesByABit) {
   EXPECT_TRUE(after.is_seen({3, 6}));
 }
 
-// Losses and embeddings of some updates, from demonstrations of which some come later than others, some are of one pair, and old and new
-// environments and tasks stand together in every way.
+// Losses and embeddings of some updates, from demonstrations of which some come later than others, some are of one
+// pair, and old and new environments and tasks stand together in every way.
 struct Updates {
   std::vector<double> losses;
   std::vector<float> embeddings;
@@ -90,11 +92,13 @@ Updates updates(const PolicyShape& shape, int threads, size_t memory_bytes) {
     if (i == 3)
       for (const EnvTask& pair : {EnvTask{4, 0}, {4, 9}, {2, 9}}) adaptation.add(demonstration(world, pair, 1));
     const Losses losses = adaptation.update();
-    for (const double loss : {losses.total, losses.policy, losses.reward, losses.env, losses.task}) result.losses.push_back(loss);
+    for (const double loss : {losses.total, losses.policy, losses.reward, losses.env, losses.task})
+      result.losses.push_back(loss);
   }
   for (const char* name : {"embedding.env", "embedding.task"})
     for (const float value : tensor(adaptation.model(), name)) result.embeddings.push_back(value);
-  const std::vector<float> before = tensor(widen(start, world, world, 1, 5), "embedding.env"), after = tensor(adaptation.model(), "embedding.env");
+  const std::vector<float> before = tensor(widen(start, world, world, 1, 5), "embedding.env"),
+                           after = tensor(adaptation.model(), "embedding.env");
   EXPECT_EQ(changed_rows(before, after, shape.embedding), std::vector<int>{4});
   return result;
 }
@@ -109,7 +113,8 @@ TEST(Adapt, WhatIsKeptOfTheHeadGivesWhatTheWholeHeadDoes) {
       for_every_target([&](const std::string&) {
         const double limit = 1e-6 + kernels<float>().product_error;
         const Updates whole = updates(shape, 1, 0), kept = updates(shape, 1, size_t(1) << 30);
-        for (size_t i = 0; i < whole.losses.size(); ++i) EXPECT_NEAR(kept.losses[i], whole.losses[i], limit * whole.losses[i]) << i;
+        for (size_t i = 0; i < whole.losses.size(); ++i)
+          EXPECT_NEAR(kept.losses[i], whole.losses[i], limit * whole.losses[i]) << i;
         EXPECT_LT(relative_error(kept.embeddings, whole.embeddings), limit);
         EXPECT_NE(kept.embeddings, whole.embeddings) << "the same way twice?";
         EXPECT_EQ(updates(shape, 2, size_t(1) << 30).embeddings, kept.embeddings) << "threads show";
@@ -140,7 +145,8 @@ TEST(Adapt, AWiderWorldKeepsWhatItKnows) {
   const std::vector<float> before = tensor(small, "embedding.env"), after = tensor(wide, "embedding.env");
   for (int env = 0; env < few.envs(); ++env) {
     const int place = many.env_index(few.maze(env).name), width = small.shape.embedding;
-    EXPECT_TRUE(std::equal(before.begin() + env * width, before.begin() + (env + 1) * width, after.begin() + place * width));
+    EXPECT_TRUE(
+        std::equal(before.begin() + env * width, before.begin() + (env + 1) * width, after.begin() + place * width));
   }
   EXPECT_EQ(tensor(wide, "theta"), tensor(small, "theta"));
   EXPECT_TRUE(wide.is_seen({many.env_index(few.maze(1).name), 2}));

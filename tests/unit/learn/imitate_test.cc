@@ -55,7 +55,8 @@ const std::vector<EnvTask> kSeen = {{0, 0}, {1, 5}, {7, 19}};
 // A stream over text, with the run that reads it.
 struct Session {
   explicit Session(const std::string& text) : path(folder.file("stream", text)), input(path) {}
-  void start(const ImitationOptions& options, int threads, const std::vector<EnvTask>& seen = kSeen, uint64_t seed = 3) {
+  void start(const ImitationOptions& options, int threads, const std::vector<EnvTask>& seen = kSeen,
+             uint64_t seed = 3) {
     parallel = std::make_unique<Parallel>(threads);
     run = std::make_unique<Imitation>(builtin_world(), *parallel, "synpo", options, seen, seed);
     run->set_total_updates(8);
@@ -63,7 +64,8 @@ struct Session {
   }
   void resume(const std::string& checkpoint, int threads) {
     parallel = std::make_unique<Parallel>(threads);
-    run = std::make_unique<Imitation>(builtin_world(), *parallel, read_text(checkpoint, [](Input& in) { return read_checkpoint(in); }));
+    run = std::make_unique<Imitation>(builtin_world(), *parallel,
+                                      read_text(checkpoint, [](Input& in) { return read_checkpoint(in); }));
     stream = std::make_unique<TrajectoryStream>(input, builtin_world(), run->allowed(), run->window());
     stream->skip(run->stream_lines(), run->stream_hash());
   }
@@ -141,13 +143,16 @@ TEST_P(ImitationModes, StrippedAndWholeCheckpointsHaveTheSameWeights) {
   EXPECT_EQ(whole.updates, 3);
   EXPECT_EQ(whole.seed, 3u);
   EXPECT_EQ(whole.window, 1);
-  EXPECT_EQ(whole.seen, (std::vector<std::pair<std::string, std::string>>{{"map1", "R-B"}, {"map2", "R-G"}, {"map8", "P-O"}}));
+  EXPECT_EQ(whole.seen,
+            (std::vector<std::pair<std::string, std::string>>{{"map1", "R-B"}, {"map2", "R-G"}, {"map8", "P-O"}}));
   EXPECT_EQ(parse_options(whole.options).learning_rate, 0.003);
   EXPECT_EQ(thrown([&] { Imitation(builtin_world(), *session.parallel, stripped); }),
             "65 the checkpoint has no training state (was it stripped?): --init takes its weights");
 }
 
-std::string mode_name(const testing::TestParamInfo<ImitationOptions (*)()>& info) { return info.index ? "SingleSteps" : "WholeTrajectories"; }
+std::string mode_name(const testing::TestParamInfo<ImitationOptions (*)()>& info) {
+  return info.index ? "SingleSteps" : "WholeTrajectories";
+}
 INSTANTIATE_TEST_SUITE_P(Modes, ImitationModes, testing::Values(&whole_trajectories, &single_steps), mode_name);
 
 TEST(Imitation, LearnsItsOwnFewSteps) {
@@ -178,7 +183,8 @@ TEST(Imitation, AveragedWeightsFollow) {
   session.start(options, 2);
   session.update(4);
   const Checkpoint checkpoint = session.run->checkpoint(true);
-  const std::vector<float> averaged = checkpoint.file.get<float>("theta"), raw = checkpoint.file.get<float>("train/raw/theta");
+  const std::vector<float> averaged = checkpoint.file.get<float>("theta"),
+                           raw = checkpoint.file.get<float>("train/raw/theta");
   EXPECT_NE(averaged, raw);
   options.averaging = 0;
   Session plain(expert_lines(kSeen, 10));
@@ -202,7 +208,8 @@ TEST(Imitation, TakesTheWeightsOfAnotherModel) {
   ImitationOptions wider = whole_trajectories();
   wider.hidden = 13;
   Imitation other(builtin_world(), *trained.parallel, "synpo", wider, {}, 9);
-  EXPECT_EQ(thrown([&] { other.take_weights(model); }), "65 the checkpoint's network is not the one asked for: method or sizes differ");
+  EXPECT_EQ(thrown([&] { other.take_weights(model); }),
+            "65 the checkpoint's network is not the one asked for: method or sizes differ");
 }
 
 TEST(Imitation, SeenPairsAreGivenOrGrow) {
@@ -239,12 +246,14 @@ TEST(Imitation, ErrorsOfTheStreamNameTheLine) {
     std::string message = thrown([&] {
       for (int i = 0; i < 3; ++i) session.run->update(*session.stream);
     });
-    if (const size_t at = message.find(session.path); at != std::string::npos) message.replace(at, session.path.size(), "IN");
+    if (const size_t at = message.find(session.path); at != std::string::npos)
+      message.replace(at, session.path.size(), "IN");
     return message;
   };
   EXPECT_EQ(refused(good), "nothing thrown");
   EXPECT_EQ(refused(good + expert_lines({{3, 3}}, 1)), "65 IN: line 6: pair map4, O-P is not in the seen set");
-  EXPECT_EQ(refused(good + expert_lines({{0, 0}}, 1, 0, 0)), "65 IN: line 6: window 0, expected 1 as in the trajectories before");
+  EXPECT_EQ(refused(good + expert_lines({{0, 0}}, 1, 0, 0)),
+            "65 IN: line 6: window 0, expected 1 as in the trajectories before");
   EXPECT_EQ(refused(good + "[]\n"), "65 IN: line 6: found '[]', expected a JSON object");
 }
 
@@ -254,7 +263,9 @@ TEST(Imitation, ResumingOnAnotherStreamIsRefused) {
   first.update(2);
   const std::string checkpoint = first.saved();
   Session other(expert_lines(kSeen, 12, 0.1));
-  EXPECT_TRUE(thrown([&] { other.resume(checkpoint, 1); }).ends_with(": the first 6 lines are not those that the checkpoint was trained on"));
+  EXPECT_TRUE(thrown([&] {
+                other.resume(checkpoint, 1);
+              }).ends_with(": the first 6 lines are not those that the checkpoint was trained on"));
 }
 
 TEST(Imitation, RefusesDamagedTrainingState) {
@@ -267,12 +278,15 @@ TEST(Imitation, RefusesDamagedTrainingState) {
     change(checkpoint);
     return thrown([&] { Imitation(builtin_world(), *session.parallel, checkpoint); });
   };
-  for (const char* name : {"train/m/theta", "train/v/theta", "train/raw/theta", "train/memory/episodes", "train/running/running"})
+  for (const char* name :
+       {"train/m/theta", "train/v/theta", "train/raw/theta", "train/memory/episodes", "train/running/running"})
     EXPECT_EQ(refused([&](Checkpoint& c) { c.file.tensors.erase(name); }), concat("65 no tensor '", name, "'"));
-  EXPECT_EQ(refused([](Checkpoint& c) { c.options["hidden"] = "13"; }), "65 the checkpoint's shape and options disagree");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.options["hidden"] = "13"; }),
+            "65 the checkpoint's shape and options disagree");
   EXPECT_EQ(refused([](Checkpoint& c) { c.options.erase("lr"); }), "65 the checkpoint has no option 'lr'");
   const uint64_t position[3] = {1, 2, 3};
-  EXPECT_EQ(refused([&](Checkpoint& c) { c.file.add("train/position", {3}, position, 3); }), "65 tensor 'train/position': found 3 values, expected 4");
+  EXPECT_EQ(refused([&](Checkpoint& c) { c.file.add("train/position", {3}, position, 3); }),
+            "65 tensor 'train/position': found 3 values, expected 4");
 }
 
 TEST(Imitation, EvaluatesSampledPairs) {

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "helpers/episodes.h"
-#include "play/model.h"
-#include "learn/recipe.h"
-#include "play/stream.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
+#include "learn/recipe.h"
+#include "play/model.h"
+#include "play/stream.h"
 
 namespace synpo {
 namespace {
@@ -73,7 +73,8 @@ TEST(Expert, AnEpisodeIsTheSameWhateverElseIsAsked) {
   EXPECT_NE(expert_episode(world, {1, 3}, 8, 11, 0, 1).start, expert_episode(world, {1, 3}, 7, 11, 0, 1).start);
   EXPECT_NE(expert_episode(world, {1, 4}, 7, 11, 0, 1).start, expert_episode(world, {1, 3}, 7, 11, 0, 1).start);
   // Starts of the evaluation are others than those of the training.
-  EXPECT_NE(episode_start(world, {1, 3}, 7, Purpose::kEvaluation, 11), episode_start(world, {1, 3}, 7, Purpose::kEpisodeStart, 11));
+  EXPECT_NE(episode_start(world, {1, 3}, 7, Purpose::kEvaluation, 11),
+            episode_start(world, {1, 3}, 7, Purpose::kEpisodeStart, 11));
 }
 
 TEST(Replay, ComesBackThroughTheFile) {
@@ -94,7 +95,10 @@ TEST(Replay, TruncatedEpisodesToo) {
   Trajectory t = expert_episode(world, {0, 0}, 1, 0, 0, 1);
   t.actions.assign(kStepLimit, kPick);
   t.start["agent"] = {1, 1};
-  if (std::count_if(t.start.begin(), t.start.end(), [](const auto& entry) { return entry.second == std::pair{1, 1}; }) > 1) FAIL() << "a treasure lies there";
+  if (std::count_if(t.start.begin(), t.start.end(), [](const auto& entry) {
+        return entry.second == std::pair{1, 1};
+      }) > 1)
+    FAIL() << "a treasure lies there";
   t.reward_cents.assign(kStepLimit, -1);
   t.terminated = t.success = false;
   t.truncated = true;
@@ -113,19 +117,29 @@ TEST(Replay, RefusesWhatIsNotThisWorlds) {
   };
   EXPECT_EQ(refused([](Trajectory&) {}), "nothing thrown");
   EXPECT_EQ(refused([](Trajectory& t) { t.world = "kitchen"; }), "65 world 'kitchen', expected 'gridworld'");
-  EXPECT_EQ(refused([](Trajectory& t) { t.world = "kitchen", t.actions[0] = 6; }), "65 world 'kitchen', expected 'gridworld'");
-  EXPECT_EQ(refused([](Trajectory& t) { t.actions[0] = 5; }), "65 field 'actions': found '5', expected a whole number from 0 to 4");
+  EXPECT_EQ(refused([](Trajectory& t) { t.world = "kitchen", t.actions[0] = 6; }),
+            "65 world 'kitchen', expected 'gridworld'");
+  EXPECT_EQ(refused([](Trajectory& t) { t.actions[0] = 5; }),
+            "65 field 'actions': found '5', expected a whole number from 0 to 4");
   EXPECT_EQ(refused([](Trajectory& t) { t.rules = 2; }), "65 rules version 2, this build has 1");
   EXPECT_EQ(refused([](Trajectory& t) { t.env = "map21"; }), "65 unknown env 'map21' (other maps? see -w)");
   EXPECT_EQ(refused([](Trajectory& t) { t.task = "R-R"; }), "65 unknown task 'R-R'");
-  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }), "65 env 'map4' is not the one of that name here (other maps? see -w)");
+  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }),
+            "65 env 'map4' is not the one of that name here (other maps? see -w)");
   EXPECT_EQ(refused([](Trajectory& t) { t.start.erase("G"); }), "65 field 'start': no place for 'G'");
-  EXPECT_EQ(refused([](Trajectory& t) { t.start["Z"] = t.start["B"]; }), "65 field 'start': found 7 places, expected the agent's and those of 5 treasures");
-  EXPECT_EQ(refused([](Trajectory& t) { t.start["B"] = {0, 3}; }), "65 field 'start': 'B' at row 0, column 3 is not on the floor of map3");
-  EXPECT_EQ(refused([](Trajectory& t) { t.start["agent"] = {1, 1 << 20}; }),
+  EXPECT_EQ(refused([](Trajectory& t) { t.start["Z"] = t.start["B"]; }),
+            "65 field 'start': found 7 places, expected the agent's and those of 5 treasures");
+  EXPECT_EQ(refused([](Trajectory& t) {
+              t.start["B"] = {0, 3};
+            }),
+            "65 field 'start': 'B' at row 0, column 3 is not on the floor of map3");
+  EXPECT_EQ(refused([](Trajectory& t) {
+              t.start["agent"] = {1, 1 << 20};
+            }),
             "65 field 'start': 'agent' at row 1, column 1048576 is not on the floor of map3");
   EXPECT_EQ(refused([](Trajectory& t) { t.start["B"] = t.start["P"]; }), "65 field 'start': two treasures on one cell");
-  EXPECT_EQ(refused([](Trajectory& t) { t.reward_cents[5] = -1; }), "65 replay gives reward 0.99 at step 6, file says -0.01: other maps?");
+  EXPECT_EQ(refused([](Trajectory& t) { t.reward_cents[5] = -1; }),
+            "65 replay gives reward 0.99 at step 6, file says -0.01: other maps?");
   EXPECT_EQ(refused([](Trajectory& t) { t.reward_cents.back() = -1; }),
             concat("65 replay gives reward 10.99 at step ", good.actions.size(), ", file says -0.01: other maps?"));
   EXPECT_EQ(refused([](Trajectory& t) {
@@ -134,7 +148,8 @@ TEST(Replay, RefusesWhatIsNotThisWorlds) {
             }),
             concat("65 replay ends at step ", good.actions.size(), ", file goes on to ", good.actions.size() + 1));
   for (bool Trajectory::*flag : {&Trajectory::success, &Trajectory::terminated, &Trajectory::truncated})
-    EXPECT_EQ(refused([&](Trajectory& t) { t.*flag = !(t.*flag); }), "65 replay and file differ in success, terminated or truncated");
+    EXPECT_EQ(refused([&](Trajectory& t) { t.*flag = !(t.*flag); }),
+              "65 replay and file differ in success, terminated or truncated");
 }
 
 TEST(Relabel, PutsTheExpertsLabels) {
@@ -156,8 +171,14 @@ TEST(ResolvePairs, ByName) {
   const std::vector<PairRow> rows = {{"map2", "R-B", true, ""}, {"map1", "P-O", false, ""}};
   EXPECT_EQ(resolve_pairs(builtin_world(), rows, false), (std::vector<EnvTask>{{1, 0}, {0, 19}}));
   EXPECT_EQ(resolve_pairs(builtin_world(), rows, true), (std::vector<EnvTask>{{1, 0}}));
-  EXPECT_EQ(thrown([] { resolve_pairs(builtin_world(), {{"map0", "R-B", true, ""}}, false); }), "65 pairs: unknown env 'map0' (other maps?)");
-  EXPECT_EQ(thrown([] { resolve_pairs(builtin_world(), {{"map1", "R", false, ""}}, true); }), "65 pairs: unknown task 'R'");
+  EXPECT_EQ(thrown([] {
+              resolve_pairs(builtin_world(), {{"map0", "R-B", true, ""}}, false);
+            }),
+            "65 pairs: unknown env 'map0' (other maps?)");
+  EXPECT_EQ(thrown([] {
+              resolve_pairs(builtin_world(), {{"map1", "R", false, ""}}, true);
+            }),
+            "65 pairs: unknown task 'R'");
 }
 
 // Reads a stream to its end; the number of trajectories.
@@ -185,8 +206,10 @@ TEST(Stream, ReadsHashesAndCounts) {
 
 TEST(Stream, ErrorsNameTheLine) {
   const std::string two = expert_lines({{0, 0}}, 2);
-  EXPECT_EQ(stream_refused(two + expert_lines({{0, 1}}, 1), {{0, 0}}), "65 IN: line 3: pair map1, B-G is not in the seen set");
-  EXPECT_EQ(stream_refused(two + expert_lines({{0, 0}}, 1, 0, 2), {}), "65 IN: line 3: window 2, expected 1 as in the trajectories before");
+  EXPECT_EQ(stream_refused(two + expert_lines({{0, 1}}, 1), {{0, 0}}),
+            "65 IN: line 3: pair map1, B-G is not in the seen set");
+  EXPECT_EQ(stream_refused(two + expert_lines({{0, 0}}, 1, 0, 2), {}),
+            "65 IN: line 3: window 2, expected 1 as in the trajectories before");
   EXPECT_EQ(stream_refused(two, {}, 3), "65 IN: line 1: window 1, expected 3 as in the trajectories before");
   EXPECT_EQ(stream_refused(two + "{\"format\":", {}), "65 IN: line 3: found '{\"format\":', expected a JSON object");
   EXPECT_EQ(stream_refused(two + "\n" + two, {}), "65 IN: line 3: found '', expected a JSON object");
@@ -220,9 +243,11 @@ TEST(Stream, SkipsWhatWasRead) {
       return thrown([&] { stream.skip(lines, hash); });
     });
   };
-  EXPECT_EQ(skip_refused(expert_lines({{0, 0}, {3, 5}}, 6), 4), "65 IN: the first 4 lines are not those that the checkpoint was trained on");
+  EXPECT_EQ(skip_refused(expert_lines({{0, 0}, {3, 5}}, 6), 4),
+            "65 IN: the first 4 lines are not those that the checkpoint was trained on");
   EXPECT_EQ(skip_refused(text, 3), "65 IN: the first 3 lines are not those that the checkpoint was trained on");
-  EXPECT_EQ(skip_refused(expert_lines({{0, 0}, {3, 4}}, 3), 4), "65 IN: it ends at line 3, but the checkpoint has read 4 lines: another stream?");
+  EXPECT_EQ(skip_refused(expert_lines({{0, 0}, {3, 4}}, 3), 4),
+            "65 IN: it ends at line 3, but the checkpoint has read 4 lines: another stream?");
 }
 
 TEST(Memory, KeepsTheLast) {
@@ -278,15 +303,22 @@ TEST(Memory, RefusesWhatNoMemoryWrote) {
   const std::string malformed = "65 tensor 'm/episodes' is malformed";
   const std::vector<uint8_t> bytes = good.get<uint8_t>("m/episodes");
   for (size_t size = 1; size < bytes.size(); ++size)
-    ASSERT_EQ(refused([&](SafeTensors& file) { file.add("m/episodes", {int64_t(size)}, bytes.data(), size); }), malformed) << size;
+    ASSERT_EQ(refused([&](SafeTensors& file) { file.add("m/episodes", {int64_t(size)}, bytes.data(), size); }),
+              malformed)
+        << size;
   for (const auto& [at, value] : {std::pair{0, 20}, {1, 1}, {2, 20}, {3, 0}, {4, 255}, {10, 2}, {11, 5}}) {
     std::vector<uint8_t> damaged = bytes;
     damaged[at] = uint8_t(value);
-    EXPECT_EQ(refused([&](SafeTensors& file) { file.add("m/episodes", {int64_t(bytes.size())}, damaged.data(), bytes.size()); }), malformed) << at;
+    EXPECT_EQ(refused([&](SafeTensors& file) {
+                file.add("m/episodes", {int64_t(bytes.size())}, damaged.data(), bytes.size());
+              }),
+              malformed)
+        << at;
   }
   const uint64_t serials[4] = {0, 1, 2, 3};
   EXPECT_EQ(refused([&](SafeTensors& file) { file.add("m/serials", {4}, serials, 4); }), malformed);
-  for (const uint64_t added : {0, 2, 4, 100}) EXPECT_EQ(refused([&](SafeTensors& file) { file.add("m/added", {1}, &added, 1); }), malformed) << added;
+  for (const uint64_t added : {0, 2, 4, 100})
+    EXPECT_EQ(refused([&](SafeTensors& file) { file.add("m/added", {1}, &added, 1); }), malformed) << added;
   EXPECT_EQ(refused([](SafeTensors& file) { file.tensors.erase("m/added"); }), "65 no tensor 'm/added'");
   ReplayMemory small(2);
   EXPECT_EQ(thrown([&] { small.load(good, "m/", builtin_world()); }), malformed);
@@ -305,14 +337,16 @@ TEST(GoldenV1, TheModelGivesTheScoresItGave) {
   EXPECT_TRUE(model.is_seen({1, 1}));
   EXPECT_FALSE(model.is_seen({1, 2}));
   Parallel parallel(1);
-  model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), {{0, 0}, {2, 19}, {1, 7}});
+  model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(),
+                                  {{0, 0}, {2, 19}, {1, 7}});
   const float want[3][5] = {{0.0212015f, -0.3105655f, -0.2263175f, -0.4960039f, -0.2681035f},
                             {0.0613570f, -0.1689385f, -0.2895320f, -0.6345289f, -0.2127910f},
                             {-0.0799844f, -0.1513789f, -0.1926890f, -0.5404129f, -0.1690710f}};
   for (int i = 0; i < 3; ++i) {
     const EnvTask pair = i == 0 ? EnvTask{0, 0} : i == 1 ? EnvTask{2, 19} : EnvTask{1, 7};
-    const std::vector<uint8_t> pictures =
-        pictures_of(as_gridworld(*world, "this").maze(pair.env), {to_grid_state(episode_start(builtin_world(), {0, 0}, 1, Purpose::kEvaluation, i)).now}, model.window);
+    const std::vector<uint8_t> pictures = pictures_of(
+        as_gridworld(*world, "this").maze(pair.env),
+        {to_grid_state(episode_start(builtin_world(), {0, 0}, 1, Purpose::kEvaluation, i)).now}, model.window);
     float scores[5];
     model.policy->infer(0, 1, pictures.data(), &i, scores);
     for (int a = 0; a < 5; ++a) EXPECT_NEAR(scores[a], want[i][a], 1e-5) << i << " " << a;
@@ -328,7 +362,8 @@ TEST(Model, ComesBack) {
   add_tensors(again.file, "", model.policy->parameters(), model.parameters.data());
   add_tensors(again.file, "", model.policy->statistics(), model.statistics.data());
   // Sizes that came later are the only difference.
-  for (const char* name : {"action_embedding", "head_hidden", "seam", "sf_loss"}) EXPECT_EQ(again.shape.erase(name), 1u) << name;
+  for (const char* name : {"action_embedding", "head_hidden", "seam", "sf_loss"})
+    EXPECT_EQ(again.shape.erase(name), 1u) << name;
   EXPECT_TRUE(format_checkpoint(again) == contents("tests/data/v1/checkpoint.safetensors")) << "bytes differ";
 }
 
@@ -342,21 +377,29 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
     });
   };
   EXPECT_EQ(refused([](Checkpoint&) {}), "nothing thrown");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.world = "house"; }), "65 world 'house', this build has gridworld and kitchen");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.world = "house"; }),
+            "65 world 'house', this build has gridworld and kitchen");
   EXPECT_EQ(refused([](Checkpoint& c) { c.rules = 2; }), "65 rules version 2, this build has 1");
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs[1].hash ^= 1; }), "65 env 'map2': content and hash differ");
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs[1].name = "map1"; }), "65 two environments are named 'map1'");
-  EXPECT_TRUE(refused([](Checkpoint& c) { c.envs[1].content += c.envs[1].content; }).starts_with("65 env 'map2': found 32 lines"));
+  EXPECT_TRUE(refused([](Checkpoint& c) {
+                c.envs[1].content += c.envs[1].content;
+              }).starts_with("65 env 'map2': found 32 lines"));
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs.clear(); }), "65 the checkpoint has no environment");
   EXPECT_EQ(refused([](Checkpoint& c) { c.envs.pop_back(); }), "65 the network's shape does not fit the world");
   EXPECT_EQ(refused([](Checkpoint& c) { c.tasks.pop_back(); }), "65 the checkpoint's tasks are not this build's");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.method = "dqn"; }), "65 unknown method 'dqn', expected synpo, mlp, mtl, modulenet or sf");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.method = "dqn"; }),
+            "65 unknown method 'dqn', expected synpo, mlp, mtl, modulenet or sf");
   EXPECT_EQ(refused([](Checkpoint& c) { c.method = "mlp"; }), "65 no tensor 'policy.hidden.weight'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }), "65 pairs: unknown env 'map9' (other maps?)");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape.erase("basis"); }), "65 the shape has no 'basis'");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 0; }), "65 shape 'hidden': found 0, expected a whole number from 1 to 65536");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 9; }), "65 tensor 'alpha.hidden.weight': found shape [8, 8], expected [8, 9]");
-  EXPECT_EQ(refused([](Checkpoint& c) { std::swap(c.file.tensors.at("embedding.task").shape[0], c.file.tensors.at("embedding.task").shape[1]); }),
+  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 0; }),
+            "65 shape 'hidden': found 0, expected a whole number from 1 to 65536");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 9; }),
+            "65 tensor 'alpha.hidden.weight': found shape [8, 8], expected [8, 9]");
+  EXPECT_EQ(refused([](Checkpoint& c) {
+              std::swap(c.file.tensors.at("embedding.task").shape[0], c.file.tensors.at("embedding.task").shape[1]);
+            }),
             "65 tensor 'embedding.task': found shape [4, 20], expected [20, 4]");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["actions"] = 6; }), "65 the network's shape does not fit the world");
   EXPECT_EQ(refused([](Checkpoint& c) { c.file.tensors.erase("theta"); }), "65 no tensor 'theta'");
@@ -404,7 +447,8 @@ TEST(Recipe, BalanceMovesToItsEnd) {
   EXPECT_EQ(options.running_options(50, 101).balance, 0.1);
   options.balance_final = 0.3;
   options.warm_up = 10;
-  for (const int update : {0, 5, 10}) EXPECT_DOUBLE_EQ(options.running_options(update, 110).balance, 0.1);  // whatever the total
+  for (const int update : {0, 5, 10})
+    EXPECT_DOUBLE_EQ(options.running_options(update, 110).balance, 0.1);  // whatever the total
   EXPECT_DOUBLE_EQ(options.running_options(60, 110).balance, 0.2);
   EXPECT_DOUBLE_EQ(options.running_options(110, 110).balance, 0.3);
   EXPECT_DOUBLE_EQ(options.running_options(5000, 110).balance, 0.3);
@@ -433,10 +477,12 @@ TEST(Recipe, ComesBackThroughTheCheckpoint) {
 
 TEST(Recipe, CheckpointsFromBeforeAnOptionHaveItsDefault) {
   std::map<std::string, std::string> values = describe_options(recipe("fast"));
-  for (const char* name : {"action-embedding", "head-hidden", "seam", "dropout", "sf-loss", "discount"}) ASSERT_EQ(values.erase(name), 1u) << name;
+  for (const char* name : {"action-embedding", "head-hidden", "seam", "dropout", "sf-loss", "discount"})
+    ASSERT_EQ(values.erase(name), 1u) << name;
   EXPECT_EQ(describe_options(parse_options(values)), describe_options(recipe("fast")));
   values["seam"] = "0";
-  EXPECT_EQ(thrown([&] { parse_options(values); }), "65 option 'seam': found '0', expected a whole number from 1 to 4096");
+  EXPECT_EQ(thrown([&] { parse_options(values); }),
+            "65 option 'seam': found '0', expected a whole number from 1 to 4096");
 }
 
 TEST(Shape, CheckpointsFromBeforeASizeHaveItsDefault) {
@@ -445,7 +491,8 @@ TEST(Shape, CheckpointsFromBeforeASizeHaveItsDefault) {
   shape.sf_loss = SfLoss::kCrossEntropy;
   std::map<std::string, int64_t> sizes = describe_shape(shape);
   EXPECT_EQ(describe_shape(parse_shape(sizes)), sizes);
-  for (const char* name : {"action_embedding", "head_hidden", "seam", "sf_loss"}) ASSERT_EQ(sizes.erase(name), 1u) << name;
+  for (const char* name : {"action_embedding", "head_hidden", "seam", "sf_loss"})
+    ASSERT_EQ(sizes.erase(name), 1u) << name;
   EXPECT_EQ(describe_shape(parse_shape(sizes)), describe_shape(PolicyShape()));
   sizes["seam"] = 0;
   EXPECT_EQ(thrown([&] { parse_shape(sizes); }), "65 shape 'seam': found 0, expected a whole number from 1 to 65536");
@@ -497,7 +544,8 @@ ImitationOptions from_command_line(std::vector<std::string> arguments, const std
 TEST(Recipe, FromTheCommandLine) {
   EXPECT_EQ(describe_options(from_command_line({})), describe_options(recipe(kDefaultRecipe)));
   // The order of --recipe and what changes it does not matter.
-  for (const auto& arguments : {std::vector<std::string>{"--recipe", "paper", "--task-loss", "0.5"}, {"--task-loss", "0.5", "--recipe", "paper"}}) {
+  for (const auto& arguments : {std::vector<std::string>{"--recipe", "paper", "--task-loss", "0.5"},
+                                {"--task-loss", "0.5", "--recipe", "paper"}}) {
     ImitationOptions want = recipe("paper");
     want.task_loss = 0.5;
     EXPECT_EQ(describe_options(from_command_line(arguments)), describe_options(want));
@@ -505,14 +553,27 @@ TEST(Recipe, FromTheCommandLine) {
   ImitationOptions want = recipe("fast", "sf");
   want.env_loss = want.task_loss = want.reward_loss = 0;
   want.sf_loss = 1;
-  EXPECT_EQ(describe_options(from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "q"}, "sf")), describe_options(want));
+  EXPECT_EQ(describe_options(
+                from_command_line({"--no-env-loss", "--no-task-loss", "--no-reward-loss", "--sf-loss", "q"}, "sf")),
+            describe_options(want));
   EXPECT_EQ(thrown([] { from_command_line({"--sf-loss", "ce"}, "mlp"); }), "64 -m mlp has no --sf-loss");
   EXPECT_EQ(thrown([] { from_command_line({"--dropout", "0.1"}); }), "64 -m synpo has no --dropout");
   EXPECT_EQ(from_command_line({"--action-embedding", "3"}, "mtl").action_embedding, 3);
-  EXPECT_EQ(thrown([] { from_command_line({"--sf-loss", "0"}); }), "64 option --sf-loss: found '0', expected td, q or ce; try 'tool --help'");
-  EXPECT_EQ(thrown([] { from_command_line({"--recipe", "paper", "--roll-in", "0.5"}); }), "64 --roll-in needs --batch-states");
-  EXPECT_EQ(thrown([] { from_command_line({"--recipe", "slow"}); }), "64 option --recipe: found 'slow', expected fast or paper; try 'tool --help'");
-  EXPECT_EQ(thrown([] { from_command_line({"--balance", "0"}); }),
+  EXPECT_EQ(thrown([] {
+              from_command_line({"--sf-loss", "0"});
+            }),
+            "64 option --sf-loss: found '0', expected td, q or ce; try 'tool --help'");
+  EXPECT_EQ(thrown([] {
+              from_command_line({"--recipe", "paper", "--roll-in", "0.5"});
+            }),
+            "64 --roll-in needs --batch-states");
+  EXPECT_EQ(thrown([] {
+              from_command_line({"--recipe", "slow"});
+            }),
+            "64 option --recipe: found 'slow', expected fast or paper; try 'tool --help'");
+  EXPECT_EQ(thrown([] {
+              from_command_line({"--balance", "0"});
+            }),
             "64 option --balance: found '0', expected a number from 0.001 to 1; try 'tool --help'");
 }
 

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
+#include "helpers/numbers.h"
+#include "helpers/policy_fixture.h"
 #include "learn/gae.h"
 #include "learn/ppo.h"
 #include "nn/rmsprop.h"
-#include "helpers/numbers.h"
 #include "policy/method/encoded_policy.h"
-#include "helpers/policy_fixture.h"
 
 namespace synpo {
 namespace {
@@ -86,7 +86,8 @@ TEST(Objective, ItsGradientGoesThroughEveryMethodUnderFrozenStatistics) {
     net.shake();
     const RandomSteps<double> steps(9, shape, 4);
     Parallel parallel(1);
-    for (int i = 0; i < 3; ++i) net.step(parallel, RandomSteps<double>(9, shape, 5).batch(), {});  // statistics to be frozen
+    for (int i = 0; i < 3; ++i)
+      net.step(parallel, RandomSteps<double>(9, shape, 5).batch(), {});  // statistics to be frozen
     const std::vector<double> statistics = net.statistics;
     Linear objective;
     objective.actions = shape.actions;
@@ -94,8 +95,9 @@ TEST(Objective, ItsGradientGoesThroughEveryMethodUnderFrozenStatistics) {
     StepBatch<double> batch = steps.batch();
     batch.objective = &objective;
     batch.frozen_statistics = true;
-    expect_finite_differences(net, batch, {0.3, 0.5, 0.7}, [](const Losses& losses) { return losses.total; },
-                              [](const std::string&) { return true; });
+    expect_finite_differences(
+        net, batch, {0.3, 0.5, 0.7}, [](const Losses& losses) { return losses.total; },
+        [](const std::string&) { return true; });
     EXPECT_EQ(net.statistics, statistics) << "frozen";
   }
 }
@@ -178,7 +180,10 @@ TEST(Ppo, MovesTheValueAloneAtFirstAndThenThePolicy) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(1);
   Ppo run(world, parallel, small_model(world, "synpo"), small_ppo(), 4);
-  const auto weights = [&] { return std::vector<float>(run.model().parameters.data(), run.model().parameters.data() + run.model().policy->parameters().total()); };
+  const auto weights = [&] {
+    return std::vector<float>(run.model().parameters.data(),
+                              run.model().parameters.data() + run.model().policy->parameters().total());
+  };
   const std::vector<float> before = weights();
   run.update();
   EXPECT_EQ(weights(), before);
@@ -190,7 +195,8 @@ TEST(Ppo, MovesTheValueAloneAtFirstAndThenThePolicy) {
 TEST(Ppo, ThreadsDoNotShowAndAResumedRunGoesOnToTheSameBits) {
   const GridSet world = GridSet::open("gridworld");
   Parallel one(1), two(2);
-  Ppo straight(world, one, small_model(world, "synpo"), small_ppo(), 4), other(world, two, small_model(world, "synpo"), small_ppo(), 4);
+  Ppo straight(world, one, small_model(world, "synpo"), small_ppo(), 4),
+      other(world, two, small_model(world, "synpo"), small_ppo(), 4);
   for (int i = 0; i < 2; ++i) {
     straight.update();
     other.update();

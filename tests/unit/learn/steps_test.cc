@@ -20,16 +20,18 @@ constexpr size_t kPicture = size_t(kGridCells) * kHistory;
 // A running episode as the definition has it: where it stands, and what was seen on the way.
 struct Walk {
   const Episode* trajectory;  // null: unknown
-  bool following;                 // the actions so far are the trajectory's
+  bool following;             // the actions so far are the trajectory's
   GridState state;
   std::vector<GridFrame> frames;
 
-  explicit Walk(const Episode& episode) : trajectory(&episode), following(true), state(to_grid_state(episode.start)), frames{state.now} {}
+  explicit Walk(const Episode& episode)
+      : trajectory(&episode), following(true), state(to_grid_state(episode.start)), frames{state.now} {}
   const Task& task() const { return builtin_world().tasks()[trajectory->pair.task]; }
   const Maze& maze() const { return builtin_world().maze(trajectory->pair.env); }
   bool recorded() const { return following && state.steps < trajectory->actions.size(); }
   int label() const {
-    return recorded() ? trajectory->labels[state.steps] : builtin_world().planner(trajectory->pair.env).action(task(), state);
+    return recorded() ? trajectory->labels[state.steps]
+                      : builtin_world().planner(trajectory->pair.env).action(task(), state);
   }
   int move() const { return recorded() ? int(trajectory->actions[state.steps]) : label(); }
   // False at the episode's end.
@@ -41,10 +43,13 @@ struct Walk {
   }
 };
 
-StepKind kind_of(const GridState& state, int label) { return builtin_world().kind({0, 0}, to_world_state(state), label); }
+StepKind kind_of(const GridState& state, int label) {
+  return builtin_world().kind({0, 0}, to_world_state(state), label);
+}
 
 bool has_planner_q(const Minibatch& batch, int i, const Walk& walk) {
-  const std::array<int, kGridActions> cents = builtin_world().planner(walk.trajectory->pair.env).q_cents(walk.task(), walk.state);
+  const std::array<int, kGridActions> cents =
+      builtin_world().planner(walk.trajectory->pair.env).q_cents(walk.task(), walk.state);
   for (int a = 0; a < kGridActions; ++a)
     if (batch.planner_q[i * kGridActions + a] != float(cents[a]) / 100) return false;
   return true;
@@ -52,8 +57,8 @@ bool has_planner_q(const Minibatch& batch, int i, const Walk& walk) {
 
 // Whether sample `i` of the batch is the walk's next step, taken with `taken`.
 bool is_step(const Minibatch& batch, int i, const Walk& walk, int window, int taken) {
-  if (batch.env[i] != walk.trajectory->pair.env || batch.task[i] != walk.trajectory->pair.task || batch.label[i] != walk.label() ||
-      batch.taken[i] != taken || batch.kind[i] != kind_of(walk.state, walk.label()))
+  if (batch.env[i] != walk.trajectory->pair.env || batch.task[i] != walk.trajectory->pair.task ||
+      batch.label[i] != walk.label() || batch.taken[i] != taken || batch.kind[i] != kind_of(walk.state, walk.label()))
     return false;
   GridState after = walk.state;
   if (batch.reward[i] != float(grid_step(walk.maze(), walk.task(), after, taken).reward_cents) / 100) return false;
@@ -62,11 +67,13 @@ bool is_step(const Minibatch& batch, int i, const Walk& walk, int window, int ta
   return std::equal(pictures.begin(), pictures.end(), batch.observations.begin() + i * kPicture);
 }
 
-// Whether what stands behind sample `i`, the walk's next step, is where the taken action leads. `behind` is where the batch has it.
+// Whether what stands behind sample `i`, the walk's next step, is where the taken action leads. `behind` is where the
+// batch has it.
 bool leads_on(const Minibatch& batch, int i, int behind, const Walk& walk, int window) {
   Walk after = walk;
   GridState state = walk.state;
-  if (grid_step(walk.maze(), walk.task(), state, batch.taken[i]).terminated) return batch.next[i] == StepBatch<float>::kTerminal;
+  if (grid_step(walk.maze(), walk.task(), state, batch.taken[i]).terminated)
+    return batch.next[i] == StepBatch<float>::kTerminal;
   after.step(batch.taken[i]);
   return batch.next[i] == behind && is_step(batch, behind, after, window, after.move());
 }
@@ -78,7 +85,8 @@ ReplayMemory memory_of(int count, double noise, const std::vector<EnvTask>& pair
 }
 
 bool equal(const Minibatch& a, const Minibatch& b) {
-  return a.observations == b.observations && a.env == b.env && a.task == b.task && a.label == b.label && a.taken == b.taken && a.reward == b.reward && a.kind == b.kind;
+  return a.observations == b.observations && a.env == b.env && a.task == b.task && a.label == b.label &&
+         a.taken == b.taken && a.reward == b.reward && a.kind == b.kind;
 }
 
 TEST(StepKind, ByWhatIsAsked) {
@@ -108,7 +116,8 @@ TEST(TrajectoryDraw, TakesAllStepsOfTheDrawnTrajectories) {
     for (int count = 0; count < kCount; ++count) {
       // The first step tells which trajectory it is.
       size_t which = 0;
-      while (which < memory.size() && !is_step(batch, at, Walk(memory[which]), window, memory[which].actions[0])) ++which;
+      while (which < memory.size() && !is_step(batch, at, Walk(memory[which]), window, memory[which].actions[0]))
+        ++which;
       ASSERT_LT(which, memory.size());
       ++drawn[which];
       Walk walk(memory[which]);
@@ -151,7 +160,8 @@ TEST(TrajectoryDraw, KnowsTheStepBehindAndThePlannersValues) {
         walk.step(action);
         ++at;
       }
-      EXPECT_EQ(batch.next[at - 1], memory[which].actions.size() == 5 ? StepBatch<float>::kUnknown : StepBatch<float>::kTerminal);
+      EXPECT_EQ(batch.next[at - 1],
+                memory[which].actions.size() == 5 ? StepBatch<float>::kUnknown : StepBatch<float>::kTerminal);
     }
   }
   EXPECT_EQ(ends.size(), 2u);
@@ -181,10 +191,12 @@ TEST(TrajectoryDraw, IsTheSameForTheSameUpdate) {
   EXPECT_FALSE(equal(a, b));
 }
 
-// What of every running episode is known: the walks that it may be on. Each draw has to be the next step of one of them.
+// What of every running episode is known: the walks that it may be on. Each draw has to be the next step of one of
+// them.
 class Followers {
  public:
-  Followers(const ReplayMemory& memory, const RunningOptions& options, int window) : memory_(memory), options_(options), window_(window), walks_(options.episodes) {
+  Followers(const ReplayMemory& memory, const RunningOptions& options, int window)
+      : memory_(memory), options_(options), window_(window), walks_(options.episodes) {
     for (size_t i = 0; i < memory.size(); ++i) {
       // Anywhere on a trajectory, to begin with.
       Walk walk(memory[i]);
@@ -303,12 +315,14 @@ TEST(RunningDraw, NoiseAndTheLearnersMovesAreAsOftenAsAsked) {
   for (int update = 0; update < 100; ++update) {
     running.draw(memory, parallel, 64, 1, update, batch);
     for (int i = 0; i < 64; ++i) {
-      const std::vector<uint8_t> picture(batch.observations.begin() + i * kPicture, batch.observations.begin() + (i + 1) * kPicture);
+      const std::vector<uint8_t> picture(batch.observations.begin() + i * kPicture,
+                                         batch.observations.begin() + (i + 1) * kPicture);
       // The learner picks on empty floor: the newest two pictures are alike then.
       if (update > 0 && batch.kind[i] != StepKind::kStart) {
         ++steps;
         bool alike = true;
-        for (int cell = 0; cell < kGridCells; ++cell) alike = alike && picture[cell * kHistory + 3] == picture[cell * kHistory + 2];
+        for (int cell = 0; cell < kGridCells; ++cell)
+          alike = alike && picture[cell * kHistory + 3] == picture[cell * kHistory + 2];
         stayed += alike;
       }
       if (batch.label[i] == kPick) continue;
@@ -465,7 +479,8 @@ TEST(RunningDraw, FreshStartsGoAnywhereWithThePlannersLabels) {
       starts.insert(newest);
       if (std::count(state.now.treasures.begin(), state.now.treasures.end(), kPicked) > 0) continue;
       ++checked;
-      EXPECT_EQ(batch.label[i], builtin_world().planner(batch.env[i]).action(builtin_world().tasks()[batch.task[i]], state));
+      EXPECT_EQ(batch.label[i],
+                builtin_world().planner(batch.env[i]).action(builtin_world().tasks()[batch.task[i]], state));
     }
     running.advance(memory, std::vector<int>(16, kPick), update);
   }
@@ -485,7 +500,8 @@ TEST(RunningDraw, BringsNoPairThatTheMemoryHasNot) {
     running.draw(memory, parallel, 33, 1, update, batch);
     std::vector<int> greedy;
     for (int i = 0; i < 33; ++i) {
-      ASSERT_TRUE(std::count(pairs.begin(), pairs.end(), EnvTask{batch.env[i], batch.task[i]})) << batch.env[i] << " " << batch.task[i];
+      ASSERT_TRUE(std::count(pairs.begin(), pairs.end(), EnvTask{batch.env[i], batch.task[i]}))
+          << batch.env[i] << " " << batch.task[i];
       found.insert({batch.env[i], batch.task[i]});
       greedy.push_back((update + i) % kGridActions);
     }
@@ -525,9 +541,12 @@ TEST_P(RunningDrawSaved, HasTheSameFuture) {
     other.load(file, "r/", other_memory);
     SafeTensors again;
     other.save(again, "r/");
-    for (const char* name : {"r/running", "r/episodes"}) EXPECT_TRUE(again.tensors[name].bytes == file.tensors[name].bytes) << name;
-    const std::vector<Minibatch> expected = future(running, memory, 1, pause, pause + 20), got = future(other, other_memory, 2, pause, pause + 20);
-    for (size_t i = 0; i < got.size(); ++i) ASSERT_TRUE(equal(got[i], expected[i])) << "saved at " << pause << ", batch " << i;
+    for (const char* name : {"r/running", "r/episodes"})
+      EXPECT_TRUE(again.tensors[name].bytes == file.tensors[name].bytes) << name;
+    const std::vector<Minibatch> expected = future(running, memory, 1, pause, pause + 20),
+                                 got = future(other, other_memory, 2, pause, pause + 20);
+    for (size_t i = 0; i < got.size(); ++i)
+      ASSERT_TRUE(equal(got[i], expected[i])) << "saved at " << pause << ", batch " << i;
   }
 }
 INSTANTIATE_TEST_SUITE_P(FreshStarts, RunningDrawSaved, testing::Bool());
@@ -547,23 +566,38 @@ TEST(RunningDraw, RefusesWhatNoSaveWrote) {
   const std::string malformed = "65 tensor 'r/running' is malformed";
   const std::vector<int64_t> words = good.get<int64_t>("r/running");
   EXPECT_EQ(refused([](SafeTensors&) {}), "nothing thrown");
-  EXPECT_EQ(refused([&](SafeTensors& file) { file.add("r/running", {int64_t(words.size()) - 1}, words.data(), words.size() - 1); }), malformed);
+  EXPECT_EQ(refused([&](SafeTensors& file) {
+              file.add("r/running", {int64_t(words.size()) - 1}, words.data(), words.size() - 1);
+            }),
+            malformed);
   const size_t each = words.size() / 40;
   for (size_t at = 0; at < each; ++at)
     for (const int64_t value : {int64_t{-1}, INT64_MAX}) {
       if (at == 0 && value > 0) continue;  // a serial may be any number
       std::vector<int64_t> damaged = words;
       damaged[7 * each + at] = value;
-      EXPECT_EQ(refused([&](SafeTensors& file) { file.add("r/running", {int64_t(words.size())}, damaged.data(), damaged.size()); }), malformed)
+      EXPECT_EQ(refused([&](SafeTensors& file) {
+                  file.add("r/running", {int64_t(words.size())}, damaged.data(), damaged.size());
+                }),
+                malformed)
           << "word " << at << " " << value;
     }
   const std::vector<uint8_t> episodes = good.get<uint8_t>("r/episodes");
-  EXPECT_EQ(refused([&](SafeTensors& file) { file.add("r/episodes", {int64_t(episodes.size()) - 1}, episodes.data(), episodes.size() - 1); }), malformed);
-  // The pair and the number of remembered states; then the newest state's agent, which may not stand in a corner of the maze.
-  for (const size_t at : {size_t(0), size_t(1), size_t(2), size_t(3), size_t(4), RunningEpisode::kBytes - sizeof(WorldState)}) {
+  EXPECT_EQ(refused([&](SafeTensors& file) {
+              file.add("r/episodes", {int64_t(episodes.size()) - 1}, episodes.data(), episodes.size() - 1);
+            }),
+            malformed);
+  // The pair and the number of remembered states; then the newest state's agent, which may not stand in a corner of the
+  // maze.
+  for (const size_t at :
+       {size_t(0), size_t(1), size_t(2), size_t(3), size_t(4), RunningEpisode::kBytes - sizeof(WorldState)}) {
     std::vector<uint8_t> damaged = episodes;
     damaged[7 * RunningEpisode::kBytes + at] = 255;
-    EXPECT_EQ(refused([&](SafeTensors& file) { file.add("r/episodes", {int64_t(damaged.size())}, damaged.data(), damaged.size()); }), malformed) << at;
+    EXPECT_EQ(refused([&](SafeTensors& file) {
+                file.add("r/episodes", {int64_t(damaged.size())}, damaged.data(), damaged.size());
+              }),
+              malformed)
+        << at;
   }
   for (const int64_t next : {int64_t{-1}, int64_t{40}})
     EXPECT_EQ(refused([&](SafeTensors& file) { file.add("r/next", {1}, &next, 1); }), malformed);

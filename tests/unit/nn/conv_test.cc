@@ -52,7 +52,8 @@ std::vector<double> convolved(const ConvShape& s, const std::vector<double>& x, 
             for (int a = 0; a < s.in; ++a)
               for (int b = 0; b < s.out; ++b)
                 y[((size_t(n) * side_out + i) * side_out + j) * s.out + b] +=
-                    x[((size_t(n) * s.side + r) * s.side + q) * s.in + a] * w[((size_t(ki) * s.kernel + kj) * s.in + a) * s.out + b];
+                    x[((size_t(n) * s.side + r) * s.side + q) * s.in + a] *
+                    w[((size_t(ki) * s.kernel + kj) * s.in + a) * s.out + b];
           }
   return y;
 }
@@ -64,8 +65,8 @@ struct ConvResult {
 
 // All of the backward pass, as the network does it: slab by slab, unit by unit.
 template <class T>
-void backward(Parallel& parallel, const Conv<T>& conv, int samples, const std::vector<T>& x, const std::vector<T>& dy, T* dx, bool add_dx,
-              std::vector<T>& dw) {
+void backward(Parallel& parallel, const Conv<T>& conv, int samples, const std::vector<T>& x, const std::vector<T>& dy,
+              T* dx, bool add_dx, std::vector<T>& dw) {
   typename Conv<T>::Slab slab;
   std::vector<Buffer<T>> scratch(parallel.threads());
   std::vector<T> dfactors(conv.dfactors_size(), T(kNan));
@@ -75,10 +76,11 @@ void backward(Parallel& parallel, const Conv<T>& conv, int samples, const std::v
     parallel.run(shard_count(size, conv.unit()), [&](int shard, int thread) {
       const Range part = shard_range(size, conv.unit(), shard);
       const size_t at = begin + part.begin;
-      conv.backward(slab, part, x.data() + at * conv.x_size(), dy.data() + at * conv.y_size(), dx ? dx + at * conv.x_size() : nullptr, add_dx,
-                    scratch[thread]);
+      conv.backward(slab, part, x.data() + at * conv.x_size(), dy.data() + at * conv.y_size(),
+                    dx ? dx + at * conv.x_size() : nullptr, add_dx, scratch[thread]);
     });
-    parallel.run(conv.gradient_shards(), [&](int shard, int) { conv.weight_gradient(shard, slab, size, begin > 0, dfactors.data()); });
+    parallel.run(conv.gradient_shards(),
+                 [&](int shard, int) { conv.weight_gradient(shard, slab, size, begin > 0, dfactors.data()); });
   }
   if (conv.transformed())
     for (int tap = 0; tap < conv.kTaps; ++tap) conv.finish_gradient(tap, dfactors.data(), dw.data());
@@ -88,15 +90,16 @@ void backward(Parallel& parallel, const Conv<T>& conv, int samples, const std::v
 
 // Forward in two calls, backward with dx added to what is there where asked.
 template <class T>
-ConvResult<T> run_conv(const ConvShape& s, typename Conv<T>::Method method, const std::vector<T>& x, const std::vector<T>& w, const std::vector<T>& dy,
-                       int threads, bool add_dx, T there) {
+ConvResult<T> run_conv(const ConvShape& s, typename Conv<T>::Method method, const std::vector<T>& x,
+                       const std::vector<T>& w, const std::vector<T>& dy, int threads, bool add_dx, T there) {
   Parallel parallel(threads);
   Conv<T> conv(s.side, s.in, s.out, s.kernel, s.stride, method);
   EXPECT_EQ(conv.weight_size(), w.size());
   EXPECT_EQ(conv.x_size() * s.samples, x.size());
   EXPECT_EQ(conv.y_size() * s.samples, dy.size());
   for (int p = 0; p < conv.products(); ++p) conv.prepare(p, w.data(), true);
-  ConvResult<T> result = {std::vector<T>(dy.size(), T(kNan)), std::vector<T>(x.size(), add_dx ? there : T(kNan)), std::vector<T>(w.size(), T(kNan))};
+  ConvResult<T> result = {std::vector<T>(dy.size(), T(kNan)), std::vector<T>(x.size(), add_dx ? there : T(kNan)),
+                          std::vector<T>(w.size(), T(kNan))};
   Buffer<T> scratch;
   const int first = s.samples / 2;
   conv.forward(first, x.data(), result.y.data(), scratch);
@@ -129,7 +132,8 @@ TEST_P(ConvForms, BackwardIsFiniteDifferences) {
   const auto loss = [&] { return inner_product(convolved(s, x, w), dy); };
   const std::vector<double> fixed_x = x, fixed_w = w;
   for (const bool add_dx : {false, true}) {
-    const ConvResult<double> got = run_conv<double>(s, Conv<double>::Method::kFastest, fixed_x, fixed_w, dy, 2, add_dx, 0.5);
+    const ConvResult<double> got =
+        run_conv<double>(s, Conv<double>::Method::kFastest, fixed_x, fixed_w, dy, 2, add_dx, 0.5);
     Random random(1, Purpose::kInit, 6);
     for (int i = 0; i < 60; ++i) {
       const size_t at_x = random.below(uint32_t(x.size())), at_w = random.below(uint32_t(w.size()));
@@ -170,10 +174,12 @@ INSTANTIATE_TEST_SUITE_P(Conv, ConvForms, testing::ValuesIn(kConvShapes), form_n
 
 TEST(Conv, LargeBatchesOnOneAndTwoThreads) {
   // More samples than are transformed at once, and no multiple of any unit; small weights and large ones.
-  for (const ConvShape& s : {ConvShape{"", 2, 5, 6, 3, 1, 1043}, ConvShape{"", 4, 3, 4, 3, 1, 1043}, ConvShape{"", 4, 5, 3, 3, 2, 1043},
-                             ConvShape{"", 2, 70, 80, 3, 1, 1043}, ConvShape{"", 4, 66, 66, 3, 1, 1043}}) {
+  for (const ConvShape& s :
+       {ConvShape{"", 2, 5, 6, 3, 1, 1043}, ConvShape{"", 4, 3, 4, 3, 1, 1043}, ConvShape{"", 4, 5, 3, 3, 2, 1043},
+        ConvShape{"", 2, 70, 80, 3, 1, 1043}, ConvShape{"", 4, 66, 66, 3, 1, 1043}}) {
     const int side_out = (s.side + s.stride - 1) / s.stride;
-    const std::vector<float> x = random_values<float>(size_t(s.samples) * s.side * s.side * s.in, 1), w = random_values<float>(9 * size_t(s.in) * s.out, 2),
+    const std::vector<float> x = random_values<float>(size_t(s.samples) * s.side * s.side * s.in, 1),
+                             w = random_values<float>(9 * size_t(s.in) * s.out, 2),
                              dy = random_values<float>(size_t(s.samples) * side_out * side_out * s.out, 3);
     const ConvResult<float> one = run_conv<float>(s, Conv<float>::Method::kFastest, x, w, dy, 1, true, 0.25f);
     const ConvResult<float> two = run_conv<float>(s, Conv<float>::Method::kFastest, x, w, dy, 2, true, 0.25f);

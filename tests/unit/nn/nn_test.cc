@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <limits>
 
-#include "nn/adam.h"
-#include "nn/buffer.h"
-#include "nn/layers/dense.h"
-#include "nn/layers/frozen_perceptron.h"
-#include "nn/gemm.h"
-#include "nn/layout.h"
-#include "nn/loss.h"
-#include "nn/layers/norm.h"
-#include "nn/layers/perceptron.h"
-#include "nn/softmax.h"
 #include "helpers/numbers.h"
 #include "helpers/targets.h"
+#include "nn/adam.h"
+#include "nn/buffer.h"
+#include "nn/gemm.h"
+#include "nn/layers/dense.h"
+#include "nn/layers/frozen_perceptron.h"
+#include "nn/layers/norm.h"
+#include "nn/layers/perceptron.h"
+#include "nn/layout.h"
+#include "nn/loss.h"
+#include "nn/softmax.h"
 
 namespace synpo {
 namespace {
@@ -24,7 +24,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 // Rows [rows, channels] through a BatchNorm in three shards of different size.
 struct NormRun {
   static constexpr int kShards = 3;
-  NormRun(size_t row_count, int channel_count) : rows(row_count), channels(channel_count), norm(channels), size(rows * channels) {
+  NormRun(size_t row_count, int channel_count)
+      : rows(row_count), channels(channel_count), norm(channels), size(rows * channels) {
     z = random_values<double>(size, 1);
     for (size_t i = 0; i < size; ++i) z[i] = z[i] * (1 + i % channels) + i % channels;
     gamma = random_values<double>(channels, 2);
@@ -60,7 +61,9 @@ TEST(BatchNorm, ForwardIsTheDefinition) {
     for (size_t r = 0; r < run.rows; ++r) mean += run.z[r * run.channels + c] / run.rows;
     for (size_t r = 0; r < run.rows; ++r) variance += std::pow(run.z[r * run.channels + c] - mean, 2) / run.rows;
     for (size_t r = 0; r < run.rows; ++r)
-      ASSERT_NEAR(y[r * run.channels + c], (run.z[r * run.channels + c] - mean) / std::sqrt(variance + 1e-5) * run.gamma[c] + run.beta[c], 1e-12);
+      ASSERT_NEAR(y[r * run.channels + c],
+                  (run.z[r * run.channels + c] - mean) / std::sqrt(variance + 1e-5) * run.gamma[c] + run.beta[c],
+                  1e-12);
     EXPECT_NEAR(run.mean_after[c], 0.9 * run.running_mean[c] + 0.1 * mean, 1e-12);
     EXPECT_NEAR(run.variance_after[c], 0.9 * 2 + 0.1 * variance * 150 / 149, 1e-11);
   }
@@ -75,7 +78,8 @@ TEST(BatchNorm, BackwardIsFiniteDifferences) {
     run.norm.begin_backward(NormRun::kShards);
     for (int shard = 0; shard < NormRun::kShards; ++shard) {
       const size_t at = run.begin(shard) * channels;
-      run.norm.add_backward_rows(shard, d.data() + at, run.z.data() + at, run.begin(shard + 1) - run.begin(shard), false);
+      run.norm.add_backward_rows(shard, d.data() + at, run.z.data() + at, run.begin(shard + 1) - run.begin(shard),
+                                 false);
     }
     std::vector<double> dgamma(channels, kNan), dbeta(channels, kNan), dz = d;
     run.norm.finish_backward(run.rows, run.gamma.data(), dgamma.data(), dbeta.data());
@@ -129,13 +133,15 @@ TEST(Norm, Frozen) {
   for (double& v : variance) v = std::abs(v);
   frozen_norm(kChannels, gamma.data(), beta.data(), mean.data(), variance.data(), scale.data(), shift.data());
   for (int c = 0; c < kChannels; ++c)
-    ASSERT_NEAR(z[c] * scale[c] + shift[c], (z[c] - mean[c]) / std::sqrt(variance[c] + 1e-5) * gamma[c] + beta[c], 1e-13);
+    ASSERT_NEAR(z[c] * scale[c] + shift[c], (z[c] - mean[c]) / std::sqrt(variance[c] + 1e-5) * gamma[c] + beta[c],
+                1e-13);
 }
 
 struct DenseRun {
   int rows = 70, in = 21, out = 18;
   bool relu = true;
-  std::vector<double> x = random_values<double>(size_t(rows) * in, 1), w = random_values<double>(size_t(in) * out, 2), b = random_values<double>(out, 3);
+  std::vector<double> x = random_values<double>(size_t(rows) * in, 1), w = random_values<double>(size_t(in) * out, 2),
+                      b = random_values<double>(out, 3);
   Parallel parallel{2};
   std::vector<double> forward() {
     std::vector<double> y(size_t(rows) * out, kNan);
@@ -157,7 +163,8 @@ TEST(Dense, ForwardIsTheDefinition) {
       }
   }
   std::vector<double> without(size_t(run.rows) * run.out);
-  dense_forward<double>(run.parallel, run.rows, run.in, run.out, run.x.data(), run.w.data(), nullptr, false, without.data());
+  dense_forward<double>(run.parallel, run.rows, run.in, run.out, run.x.data(), run.w.data(), nullptr, false,
+                        without.data());
   run.relu = false;
   EXPECT_NEAR(without[1] + run.b[1], run.forward()[1], 1e-13);
 }
@@ -174,9 +181,10 @@ TEST(Dense, BackwardIsFiniteDifferences) {
       run.relu = relu;
       const std::vector<double> y = run.forward();
       std::vector<double> d = dy, dx(run.x.size(), add_dx ? 1 : kNan), dw(run.w.size(), 2), db(run.out, 3);
-      dense_backward(run.parallel, run.rows, run.in, run.out, run.x.data(), run.w.data(), relu ? y.data() : nullptr, d.data(), dx.data(), add_dx,
-                     dw.data(), db.data());
-      for (size_t i = 0; i < dx.size(); i += 11) ASSERT_NEAR(dx[i], central_difference(run.x[i], 1e-7, loss) + (add_dx ? 1 : 0), 1e-6);
+      dense_backward(run.parallel, run.rows, run.in, run.out, run.x.data(), run.w.data(), relu ? y.data() : nullptr,
+                     d.data(), dx.data(), add_dx, dw.data(), db.data());
+      for (size_t i = 0; i < dx.size(); i += 11)
+        ASSERT_NEAR(dx[i], central_difference(run.x[i], 1e-7, loss) + (add_dx ? 1 : 0), 1e-6);
       for (size_t i = 0; i < dw.size(); i += 5) ASSERT_NEAR(dw[i], central_difference(run.w[i], 1e-7, loss) + 2, 1e-6);
       for (size_t i = 0; i < db.size(); ++i) ASSERT_NEAR(db[i], central_difference(run.b[i], 1e-7, loss) + 3, 1e-6);
     }
@@ -185,8 +193,10 @@ TEST(Dense, BackwardIsFiniteDifferences) {
 // Large layers are packed and cut otherwise than small ones, which must not show.
 TEST(Dense, ALargeLayersBitsAreThoseOfItsProducts) {
   constexpr int kRows = 515, kIn = 1030, kOut = 1040;
-  const std::vector<float> x = random_values<float>(kRows * kIn, 1), w = random_values<float>(kIn * kOut, 2), dy = random_values<float>(kRows * kOut, 3);
-  const auto product = [](Op op_a, Op op_b, int m, int n, int k, const std::vector<float>& a, int lda, const std::vector<float>& b, int ldb, float before) {
+  const std::vector<float> x = random_values<float>(kRows * kIn, 1), w = random_values<float>(kIn * kOut, 2),
+                           dy = random_values<float>(kRows * kOut, 3);
+  const auto product = [](Op op_a, Op op_b, int m, int n, int k, const std::vector<float>& a, int lda,
+                          const std::vector<float>& b, int ldb, float before) {
     std::vector<float> c(size_t(m) * n, before);
     gemm(op_a, op_b, m, n, k, a.data(), lda, b.data(), ldb, c.data(), n, true);
     return c;
@@ -199,7 +209,8 @@ TEST(Dense, ALargeLayersBitsAreThoseOfItsProducts) {
       Parallel parallel(threads);
       std::vector<float> y(kRows * kOut), d = dy, dx(kRows * kIn, 2), dw(kIn * kOut, 3);
       dense_forward<float>(parallel, kRows, kIn, kOut, x.data(), w.data(), nullptr, false, y.data());
-      dense_backward<float>(parallel, kRows, kIn, kOut, x.data(), w.data(), nullptr, d.data(), dx.data(), true, dw.data(), nullptr);
+      dense_backward<float>(parallel, kRows, kIn, kOut, x.data(), w.data(), nullptr, d.data(), dx.data(), true,
+                            dw.data(), nullptr);
       EXPECT_TRUE(y == want_y) << threads;
       EXPECT_TRUE(dx == want_dx) << threads;
       EXPECT_TRUE(dw == want_dw) << threads;
@@ -213,12 +224,14 @@ TEST(FrozenPerceptron, IsThePerceptron) {
   Layout layout;
   layout.add("before", {20});
   Perceptron<double> moving("p", kIn, kHidden, kOut, layout);
-  const std::vector<double> parameters = random_values<double>(layout.total(), 1), x = random_values<double>(kRows * kIn, 2);
+  const std::vector<double> parameters = random_values<double>(layout.total(), 1),
+                            x = random_values<double>(kRows * kIn, 2);
   const FrozenPerceptron<double> frozen("p", layout, parameters.data());
   ASSERT_EQ(frozen.in(), kIn);
   ASSERT_EQ(frozen.hidden(), kHidden);
   ASSERT_EQ(frozen.out(), kOut);
-  std::vector<double> h(kRows * kHidden), y(kRows * kOut), dh(h.size()), gradient(layout.total(), 0), dy = random_values<double>(y.size(), 3);
+  std::vector<double> h(kRows * kHidden), y(kRows * kOut), dh(h.size()), gradient(layout.total(), 0),
+      dy = random_values<double>(y.size(), 3);
   frozen.forward(kRows, x.data(), h.data(), y.data());
   const double* want = moving.forward(parallel, kRows, x.data(), parameters.data());
   EXPECT_LT(relative_error(y.data(), want, y.size()), 1e-14);
@@ -238,7 +251,10 @@ TEST(CrossEntropy, IsFiniteDifferences) {
   for (const double logit : logits) sum += std::exp(logit);
   EXPECT_NEAR(loss, std::log(sum) - logits[3], 1e-13);  // not weighted
   for (int i = 0; i < 7; ++i)
-    EXPECT_NEAR(gradient[i], 0.25 * central_difference(logits[i], 1e-5, [&] { return cross_entropy(logits.data(), 7, 3, 1.0, unused.data()); }), 1e-9);
+    EXPECT_NEAR(gradient[i],
+                0.25 * central_difference(logits[i], 1e-5,
+                                          [&] { return cross_entropy(logits.data(), 7, 3, 1.0, unused.data()); }),
+                1e-9);
 }
 
 TEST(CrossEntropy, LargeScoresDoNotOverflow) {
@@ -286,7 +302,8 @@ TEST(Adam, EveryParameterMovesByItself) {
     Parallel parallel(threads);
     std::vector<float> parameter = start, m(kCount, 0), v(kCount, 0), average = start;
     for (int step = 1; step <= 3; ++step)
-      adam_step(parallel, options, step, kCount, gradient.data(), parameter.data(), m.data(), v.data(), average.data(), 0.5);
+      adam_step(parallel, options, step, kCount, gradient.data(), parameter.data(), m.data(), v.data(), average.data(),
+                0.5);
     for (size_t i = 0; i < kCount; i += 997) {
       double p = start[i], first = 0, second = 0, mean = start[i];
       for (int step = 1; step <= 3; ++step) {

@@ -9,8 +9,8 @@
 
 #include "base/hash.h"
 #include "helpers/episodes.h"
-#include "play/cell_policy.h"
 #include "nn/loss.h"
+#include "play/cell_policy.h"
 #include "world/grid/view.h"
 
 namespace synpo {
@@ -29,7 +29,8 @@ class FunctionPolicy : public Policy<float> {
   void prepare_inference(Parallel&, const float*, const float*, const std::vector<std::pair<int, int>>&) override {}
   void infer(int, int size, const uint8_t* pictures, const int* pair, float* scores, float*) override {
     EXPECT_LE(size, kInferenceUnit);
-    for (int i = 0; i < size; ++i) function_(pictures + size_t(i) * kGridCells * kHistory, pair[i], scores + size_t(i) * kGridActions);
+    for (int i = 0; i < size; ++i)
+      function_(pictures + size_t(i) * kGridCells * kHistory, pair[i], scores + size_t(i) * kGridActions);
   }
 
  private:
@@ -44,7 +45,8 @@ void always(const uint8_t*, int, float* scores) {
 // As good as random, and a function of everything that it sees.
 void hashed(const uint8_t* pictures, int pair, float* scores) {
   uint64_t bits = Hash().add(pictures, size_t(kGridCells) * kHistory).value() + uint64_t(pair) * 0x9e3779b97f4a7c15;
-  for (int a = 0; a < kGridActions; ++a, bits = (bits ^ bits >> 29) * 0xbf58476d1ce4e5b9) scores[a] = float(bits >> 40) * (a == kPick ? 0.6f : 1);
+  for (int a = 0; a < kGridActions; ++a, bits = (bits ^ bits >> 29) * 0xbf58476d1ce4e5b9)
+    scores[a] = float(bits >> 40) * (a == kPick ? 0.6f : 1);
 }
 
 const std::vector<EnvTask> kPairs = {{0, 0}, {19, 19}, {3, 7}};
@@ -57,11 +59,12 @@ std::vector<EvalEpisode> episodes_of(int64_t first, int64_t count) {
 }
 
 bool same(const PairResult& a, const PairResult& b) {
-  return a.episodes == b.episodes && a.successes == b.successes && a.wrong == b.wrong && a.timeouts == b.timeouts && a.reward_cents == b.reward_cents &&
-         a.length == b.length;
+  return a.episodes == b.episodes && a.successes == b.successes && a.wrong == b.wrong && a.timeouts == b.timeouts &&
+         a.reward_cents == b.reward_cents && a.length == b.length;
 }
 
-std::vector<PairResult> run(FunctionPolicy::Scores scores, const std::vector<EvalEpisode>& episodes, int threads, const EvalOptions& options = {}) {
+std::vector<PairResult> run(FunctionPolicy::Scores scores, const std::vector<EvalEpisode>& episodes, int threads,
+                            const EvalOptions& options = {}) {
   Parallel parallel(threads);
   FunctionPolicy policy(scores);
   return evaluate(parallel, policy, builtin_world(), kPairs, episodes, options);
@@ -71,7 +74,8 @@ std::vector<PairResult> run(FunctionPolicy::Scores scores, const std::vector<Eva
 PairResult played(FunctionPolicy::Scores scores, const EvalEpisode& episode, const EvalOptions& options) {
   const EnvTask pair = kPairs[episode.pair];
   const Maze& maze = builtin_world().maze(pair.env);
-  GridState state = to_grid_state(episode_start(builtin_world(), pair, options.seed, Purpose::kEvaluation, episode.number));
+  GridState state =
+      to_grid_state(episode_start(builtin_world(), pair, options.seed, Purpose::kEvaluation, episode.number));
   std::vector<GridFrame> frames = {state.now};
   PairResult result;
   result.episodes = 1;
@@ -130,7 +134,8 @@ TEST(Evaluate, ActionsAreDrawnWithTheProbabilitiesOfThePolicy) {
     return count;
   };
   const auto near = [](const std::vector<double>& got, const std::vector<double>& want) {
-    for (int a = 0; a < kGridActions; ++a) EXPECT_NEAR(got[a], want[a], 4 * std::sqrt(0.25 / (40 * 3 * kStepLimit))) << "action " << a;
+    for (int a = 0; a < kGridActions; ++a)
+      EXPECT_NEAR(got[a], want[a], 4 * std::sqrt(0.25 / (40 * 3 * kStepLimit))) << "action " << a;
   };
   near(counts(1), {0.4, 0.3, 0.2, 0.1, 0});
   near(counts(0.5), {16 / 30.0, 9 / 30.0, 4 / 30.0, 1 / 30.0, 0});  // squares
@@ -142,7 +147,8 @@ TEST(Evaluate, DrawsDependNeitherOnThreadsNorOnOrder) {
   options.temperature = 1;
   const std::vector<EvalEpisode> episodes = episodes_of(0, 70);
   const std::vector<PairResult> one = run(uneven, episodes, 1, options);
-  const std::vector<PairResult> two = run(uneven, std::vector<EvalEpisode>(episodes.rbegin(), episodes.rend()), 2, options);
+  const std::vector<PairResult> two =
+      run(uneven, std::vector<EvalEpisode>(episodes.rbegin(), episodes.rend()), 2, options);
   for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_TRUE(same(one[p], two[p])) << p;
 }
 
@@ -172,7 +178,8 @@ TEST(Evaluate, ALearnerThatRunsIntoTheWallTimesOut) {
   for (const EvalEpisode& episode : episodes) {
     // So many steps up to the wall, then two cents a step.
     const EnvTask pair = kPairs[episode.pair];
-    int cell = to_grid_state(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number)).now.agent, way = 0;
+    int cell = to_grid_state(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number)).now.agent,
+        way = 0;
     while (!builtin_world().maze(pair.env).wall[cell - kGridSide]) {
       cell -= kGridSide;
       ++way;
@@ -189,7 +196,8 @@ TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
   int64_t first_picks = 0;
   for (const EvalEpisode& episode : episodes) {
     const EnvTask pair = kPairs[episode.pair];
-    const int found = treasure_under_agent(to_grid_state(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number)).now);
+    const int found = treasure_under_agent(
+        to_grid_state(episode_start(builtin_world(), pair, 1, Purpose::kEvaluation, episode.number)).now);
     const bool first = found == builtin_world().tasks()[pair.task].first;
     first_picks += first;
     if (found >= 0 && !first)
@@ -219,10 +227,12 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
                lines[threads - 1].push_back(format_trajectory(t));
                const Episode again = replay(builtin_world(), t);
                EXPECT_EQ(again.pair, kPairs[episode.pair]);
-               EXPECT_EQ(again.start, episode_start(builtin_world(), again.pair, 3, Purpose::kEvaluation, episode.number));
+               EXPECT_EQ(again.start,
+                         episode_start(builtin_world(), again.pair, 3, Purpose::kEvaluation, episode.number));
                EXPECT_EQ(t.episode, episode.number);
                EXPECT_EQ(t.seed, 3u);
-               EXPECT_EQ(format_trajectory(relabelled(builtin_world(), t)), lines[threads - 1].back());  // the labels are the expert's
+               EXPECT_EQ(format_trajectory(relabelled(builtin_world(), t)),
+                         lines[threads - 1].back());  // the labels are the expert's
                int64_t reward = 0;
                for (const int cents : t.reward_cents) reward += cents;
                recorded.add({1, t.success, t.terminated && !t.success, t.truncated, reward, int64_t(t.actions.size())});
@@ -258,7 +268,8 @@ TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
       float scores[kGridActions];
       hashed(pictures, 0, scores);
       EXPECT_NEAR(std::accumulate(rates[i].begin(), rates[i].end(), 0.0), 1, 1e-12);
-      EXPECT_EQ(std::max_element(rates[i].begin(), rates[i].end()) - rates[i].begin(), argmax(scores, kGridActions)) << i;
+      EXPECT_EQ(std::max_element(rates[i].begin(), rates[i].end()) - rates[i].begin(), argmax(scores, kGridActions))
+          << i;
     }
   }
 }

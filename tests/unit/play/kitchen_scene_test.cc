@@ -7,11 +7,11 @@
 #include "base/half.h"
 #include "base/hash.h"
 #include "helpers/kitchen_rooms.h"
-#include "play/model.h"
-#include "play/world_factory.h"
-#include "play/kitchen_scenes.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
+#include "play/kitchen_scenes.h"
+#include "play/model.h"
+#include "play/world_factory.h"
 
 namespace synpo {
 namespace {
@@ -31,7 +31,8 @@ PictureFeatures frames_as_features() {
   features.draw = [](const KitchenScene&, const KitchenFrame& frame, uint8_t* picture) {
     int there = 0;
     for (int i = 0; i < kKitchenObjects; ++i) there += (i + 1) * (frame.objects[size_t(i)] + 1);
-    const int numbers[kPicture] = {frame.eye.heading / 90, frame.eye.horizon / 30 + 1, frame.doors, (frame.eye.row + frame.eye.column) % 3, there % 11};
+    const int numbers[kPicture] = {frame.eye.heading / 90, frame.eye.horizon / 30 + 1, frame.doors,
+                                   (frame.eye.row + frame.eye.column) % 3, there % 11};
     std::copy(numbers, numbers + kPicture, picture);
   };
   features.extract = [](const uint8_t* pictures, int count, float* out) {
@@ -43,7 +44,8 @@ PictureFeatures frames_as_features() {
 
 Scene small_scene(int layouts = 2) {
   Parallel parallel(2);
-  return make_scene(parallel, small_world(), 0, random_layouts(small_world(), 0, layouts, 1), frames_as_features(), [](size_t, size_t) {});
+  return make_scene(parallel, small_world(), 0, random_layouts(small_world(), 0, layouts, 1), frames_as_features(),
+                    [](size_t, size_t) {});
 }
 
 SceneKitchens world_of_scene(Scene scene) {
@@ -109,18 +111,21 @@ TEST(Scene, TheHashIsOfEverything) {
   EXPECT_TRUE(changed([](Scene& s) { ++s.extractor_hash; }));
   EXPECT_TRUE(changed([](Scene& s) { ++s.rules; }));
   EXPECT_TRUE(changed([](Scene& s) { s.features.back() = char(s.features.back() + 1); }));
-  for (const auto member : {&Scene::poses, &Scene::starts, &Scene::next, &Scene::objects, &Scene::object_distance, &Scene::receptacle_distance, &Scene::view})
+  for (const auto member : {&Scene::poses, &Scene::starts, &Scene::next, &Scene::objects, &Scene::object_distance,
+                            &Scene::receptacle_distance, &Scene::view})
     EXPECT_TRUE(changed([&](Scene& s) { ++(s.*member).back(); }));
 }
 
 TEST(Scene, DoesNotDependOnThreads) {
   Parallel one(1);
-  const Scene scene = make_scene(one, small_world(), 0, random_layouts(small_world(), 0, 2, 1), frames_as_features(), [](size_t, size_t) {});
+  const Scene scene = make_scene(one, small_world(), 0, random_layouts(small_world(), 0, 2, 1), frames_as_features(),
+                                 [](size_t, size_t) {});
   EXPECT_EQ(scene.hash(), small_scene().hash());
 }
 
 TEST(Scene, RefusesHostileFiles) {
-  const SafeTensors good = read_text(format_scene(small_scene(1)), [](Input& input) { return read_safetensors(input); });
+  const SafeTensors good =
+      read_text(format_scene(small_scene(1)), [](Input& input) { return read_safetensors(input); });
   const auto refused = [&](auto&& change) {
     SafeTensors file = good;
     change(file);
@@ -134,9 +139,11 @@ TEST(Scene, RefusesHostileFiles) {
   EXPECT_EQ(refused([](SafeTensors& f) { f.metadata["version"] = "2"; }), start + "version 2, this build reads 1 to 1");
   EXPECT_EQ(refused([](SafeTensors& f) { f.metadata["version"] = "0"; }), start + "version 0, this build reads 1 to 1");
   for (const char* value : {"", "-1", "1.0", "9999999999"})
-    EXPECT_EQ(refused([&](SafeTensors& f) { f.metadata["rules"] = value; }), concat(start, "metadata 'rules': found '", value, "', expected a whole number"));
+    EXPECT_EQ(refused([&](SafeTensors& f) { f.metadata["rules"] = value; }),
+              concat(start, "metadata 'rules': found '", value, "', expected a whole number"));
   for (const char* value : {"", "a\tb", "a\nb", "\x7f"})
-    EXPECT_EQ(refused([&](SafeTensors& f) { f.metadata["env"] = value; }), start + "metadata 'env': found " + quoted(value) + ", expected a name");
+    EXPECT_EQ(refused([&](SafeTensors& f) { f.metadata["env"] = value; }),
+              start + "metadata 'env': found " + quoted(value) + ", expected a name");
   EXPECT_NE(refused([](SafeTensors& f) { f.metadata["extractor_hash"] = "abc"; }), "nothing thrown");
   const int64_t poses = good.tensors.at("poses").shape[0], rows = good.tensors.at("features").shape[0];
   const auto tensor_start = [&](const std::string& name) { return start + "tensor '" + name + "': "; };
@@ -158,15 +165,24 @@ TEST(Scene, RefusesHostileFiles) {
   const auto with = [&](const char* name, size_t at, int32_t value) {
     return refused([&](SafeTensors& f) { std::memcpy(&f.tensors.at(name).bytes[at * 4], &value, 4); });
   };
-  EXPECT_EQ(with("next", 16, int32_t(poses)), concat(tensor_start("next"), "found ", poses, " at [3, 1], expected a whole number from 0 to ", poses - 1));
-  EXPECT_EQ(with("next", 0, -1), concat(tensor_start("next"), "found -1 at [0, 0], expected a whole number from 0 to ", poses - 1));
-  EXPECT_EQ(with("starts", 0, INT32_MAX), concat(tensor_start("starts"), "found 2147483647 at [0], expected a whole number from 0 to ", poses - 1));
-  EXPECT_EQ(with("starts", 1, 0), tensor_start("starts") + "found numbers that do not rise, expected each once, ascending");
-  EXPECT_EQ(with("poses", 5, 40000), tensor_start("poses") + "found 40000 at [1, 1], expected a whole number from -32768 to 32767");
-  EXPECT_EQ(with("objects", 3, -40000), tensor_start("objects") + "found -40000 at [0, 1, 1], expected a whole number from -32768 to 32767");
-  EXPECT_EQ(with("object_distance", 7, 65536), tensor_start("object_distance") + "found 65536 at [0, 0, 1, 0], expected a whole number from -1 to 65535");
-  EXPECT_EQ(with("receptacle_distance", 3, -2), tensor_start("receptacle_distance") + "found -2 at [0, 0, 1, 0], expected a whole number from -1 to 65535");
-  EXPECT_EQ(with("view", 9, int32_t(rows)), concat(tensor_start("view"), "found ", rows, " at [0, 0, 1, 1], expected a whole number from -1 to ", rows - 1));
+  EXPECT_EQ(with("next", 16, int32_t(poses)),
+            concat(tensor_start("next"), "found ", poses, " at [3, 1], expected a whole number from 0 to ", poses - 1));
+  EXPECT_EQ(with("next", 0, -1),
+            concat(tensor_start("next"), "found -1 at [0, 0], expected a whole number from 0 to ", poses - 1));
+  EXPECT_EQ(with("starts", 0, INT32_MAX),
+            concat(tensor_start("starts"), "found 2147483647 at [0], expected a whole number from 0 to ", poses - 1));
+  EXPECT_EQ(with("starts", 1, 0),
+            tensor_start("starts") + "found numbers that do not rise, expected each once, ascending");
+  EXPECT_EQ(with("poses", 5, 40000),
+            tensor_start("poses") + "found 40000 at [1, 1], expected a whole number from -32768 to 32767");
+  EXPECT_EQ(with("objects", 3, -40000),
+            tensor_start("objects") + "found -40000 at [0, 1, 1], expected a whole number from -32768 to 32767");
+  EXPECT_EQ(with("object_distance", 7, 65536),
+            tensor_start("object_distance") + "found 65536 at [0, 0, 1, 0], expected a whole number from -1 to 65535");
+  EXPECT_EQ(with("receptacle_distance", 3, -2),
+            tensor_start("receptacle_distance") + "found -2 at [0, 0, 1, 0], expected a whole number from -1 to 65535");
+  EXPECT_EQ(with("view", 9, int32_t(rows)), concat(tensor_start("view"), "found ", rows,
+                                                   " at [0, 0, 1, 1], expected a whole number from -1 to ", rows - 1));
   EXPECT_EQ(refused([](SafeTensors& f) {
               Tensor& t = f.tensors.at("features");
               t.bytes[2 * 2048 + 11] = 0x7c;
@@ -179,9 +195,13 @@ TEST(Scene, RefusesHostileFiles) {
               t.bytes.resize(size_t(2) * 2048 * 8);
             }),
             tensor_start("features") + "found type I64, expected F16 or F32");
-  EXPECT_EQ(refused([](SafeTensors& f) { f.tensors["features"] = {TensorType::kF16, {0, 2048}, ""}; }),
+  EXPECT_EQ(refused([](SafeTensors& f) {
+              f.tensors["features"] = {TensorType::kF16, {0, 2048}, ""};
+            }),
             tensor_start("features") + "found shape [0, 2048], expected [N, 2048] with N from 1 to 2147483647");
-  EXPECT_EQ(refused([](SafeTensors& f) { f.tensors["poses"] = {TensorType::kI32, {65536, 4}, std::string(65536 * 16, '\0')}; }),
+  EXPECT_EQ(refused([](SafeTensors& f) {
+              f.tensors["poses"] = {TensorType::kI32, {65536, 4}, std::string(65536 * 16, '\0')};
+            }),
             tensor_start("poses") + "found shape [65536, 4], expected [P, 4] with P from 1 to 65535");
 }
 
@@ -289,17 +309,20 @@ TEST(SceneKitchens, RefuseWhatCannotBePlayed) {
   };
   EXPECT_EQ(refused([](Scene&) {}), "nothing thrown");
   EXPECT_EQ(refused([](Scene& s) { s.rules = 2; }), "65 rules version 2, this build has 1");
-  EXPECT_EQ(refused([](Scene& s) { std::copy_n(&s.poses[0], 4, &s.poses[4]); }), "65 small: two poses are alike: row 3, column 1, heading 0, horizon -30");
+  EXPECT_EQ(refused([](Scene& s) { std::copy_n(&s.poses[0], 4, &s.poses[4]); }),
+            "65 small: two poses are alike: row 3, column 1, heading 0, horizon -30");
   EXPECT_EQ(refused([](Scene& s) { std::copy_n(&s.objects[0], 14, &s.objects[14]); }),
             "65 small: in layouts 0 and 1 the objects lie in the same cells, expected no two layouts alike");
   EXPECT_EQ(refused([](Scene& s) { s.view[(size_t(s.starts[0]) + 1) * 8 - 1] = -1; }),
-            "65 small, layout 0: from row 3, column 1, heading 0, horizon 0, doors 0, object in the hand 7: found no features, expected some where an episode "
+            "65 small, layout 0: from row 3, column 1, heading 0, horizon 0, doors 0, object in the hand 7: found no "
+            "features, expected some where an episode "
             "can come by");
   EXPECT_EQ(refused([](Scene& s) { std::fill(s.receptacle_distance.begin(), s.receptacle_distance.end(), -1); }),
             "65 small, layout 0: the Fridge cannot be used from everywhere");
   // In layout 1 alone the Mug is out of sight.
   EXPECT_EQ(refused([](Scene& s) {
-              for (size_t i = s.object_distance.size() / 2 + 2; i < s.object_distance.size(); i += 7) s.object_distance[i] = -1;
+              for (size_t i = s.object_distance.size() / 2 + 2; i < s.object_distance.size(); i += 7)
+                s.object_distance[i] = -1;
             }),
             "65 small, layout 1: from row 3, column 1, heading 0, horizon -30, doors 0: the Mug cannot be picked up");
   const auto two = [&](const char* name, const char* extractor) {
@@ -313,7 +336,8 @@ TEST(SceneKitchens, RefuseWhatCannotBePlayed) {
     });
   };
   EXPECT_EQ(two("small", "frames@0000000000000abc"), "65 two environments are named 'small'");
-  EXPECT_EQ(two("other", "frames@0000000000000abd"), "65 other: found features of 'frames@0000000000000abd', expected 'frames@0000000000000abc' as of small");
+  EXPECT_EQ(two("other", "frames@0000000000000abd"),
+            "65 other: found features of 'frames@0000000000000abd', expected 'frames@0000000000000abc' as of small");
   EXPECT_EQ(two("other", "frames@0000000000000abc"), "nothing thrown");
 }
 
@@ -330,8 +354,9 @@ TEST(SceneKitchens, RefuseHostileStates) {
   EXPECT_FALSE(scenes.valid({0, 0}, pack(state)));
   StartPlaces places = scenes.start_places(0, pack(good));
   places["Plate"].second += 1;
-  EXPECT_EQ(thrown([&] { scenes.start_state(0, places); }), concat("65 'Plate': found row ", places["Plate"].first, ", column ", places["Plate"].second,
-                                                                   ", where it lies in no layout with the other objects"));
+  EXPECT_EQ(thrown([&] { scenes.start_state(0, places); }),
+            concat("65 'Plate': found row ", places["Plate"].first, ", column ", places["Plate"].second,
+                   ", where it lies in no layout with the other objects"));
   state = KitchenState();  // of a kitchen that has a plan there is one layout
   state.slots = random_layouts(small_world(), 0, 1, 1)[0];
   EXPECT_TRUE(small_world().valid({0, 0}, pack(state)));
@@ -365,18 +390,23 @@ TEST(SceneFolder, IsAWorldInNaturalOrder) {
   EXPECT_EQ(some->environments()[0].name, "k10");
   const std::string none = "64 the kitchens lie in files of their own: ";
   EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen); }), none + "name their folder with -w kitchen:DIR");
-  EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen, &small_world()); }), none + "expected -w kitchen:DIR, found the built-in 'kitchen'");
+  EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen, &small_world()); }),
+            none + "expected -w kitchen:DIR, found the built-in 'kitchen'");
   EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen, some.get()); }), "nothing thrown");
-  EXPECT_EQ(thrown([&] { restore_world("kitchen", world->environments(), some.get()); }), "65 env 'k9': no scene of that name in the folder");
+  EXPECT_EQ(thrown([&] { restore_world("kitchen", world->environments(), some.get()); }),
+            "65 env 'k9': no scene of that name in the folder");
   std::vector<Environment> other = chosen;
   ++other[1].hash;
-  EXPECT_EQ(thrown([&] { restore_world("kitchen", other, world.get()); }),
-            concat("65 env 'k2': found a scene with hash ", hex(chosen[1].hash), ", expected ", hex(chosen[1].hash + 1)));
+  EXPECT_EQ(
+      thrown([&] { restore_world("kitchen", other, world.get()); }),
+      concat("65 env 'k2': found a scene with hash ", hex(chosen[1].hash), ", expected ", hex(chosen[1].hash + 1)));
 
   folder.file(std::string("k9") + kSceneEnding, "");
-  EXPECT_EQ(thrown([&] { open_world("kitchen:" + folder.path()); }), "65 cannot read " + folder.file(std::string("k9") + kSceneEnding) + ": it is empty");
+  EXPECT_EQ(thrown([&] { open_world("kitchen:" + folder.path()); }),
+            "65 cannot read " + folder.file(std::string("k9") + kSceneEnding) + ": it is empty");
   for (const char* name : {"k10", "k9", "k2"}) std::filesystem::remove(folder.file(std::string(name) + kSceneEnding));
-  EXPECT_EQ(thrown([&] { open_world("kitchen:" + folder.path()); }), "66 no *.scene.safetensors in the folder '" + folder.path() + "'");
+  EXPECT_EQ(thrown([&] { open_world("kitchen:" + folder.path()); }),
+            "66 no *.scene.safetensors in the folder '" + folder.path() + "'");
   EXPECT_TRUE(thrown([&] { open_world("kitchen:" + folder.file("none")); }).starts_with("66 cannot read the folder '"));
 }
 
@@ -400,15 +430,17 @@ TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   load_model(checkpoint, scenes);
   Scene other = small_scene(1);
   other.extractor_hash = 1;
-  EXPECT_EQ(thrown([&] { load_model(checkpoint, world_of_scene(other)); }),
-            "65 the policy was trained on features of 'frames@0000000000000abc', found those of 'frames@0000000000000001'");
+  EXPECT_EQ(
+      thrown([&] { load_model(checkpoint, world_of_scene(other)); }),
+      "65 the policy was trained on features of 'frames@0000000000000abc', found those of 'frames@0000000000000001'");
   checkpoint.extractor.clear();  // as of files that don't tell
   load_model(checkpoint, world_of_scene(other));
 
   const Checkpoint planned = describe_model(model, small_world());
   EXPECT_FALSE(lies_in_files(planned));
   EXPECT_EQ(planned.extractor, small_world().extractor());
-  EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }), "64 the checkpoint holds its environments: -w is for those that lie in files of their own");
+  EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }),
+            "64 the checkpoint holds its environments: -w is for those that lie in files of their own");
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What every method has to keep: gradients, threads, batches behind one another, inference; and what only one of them does.
+// What every method has to keep: gradients, threads, batches behind one another, inference; and what only one of them
+// does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,8 +65,8 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const au
 
 constexpr double kDropout = 0.3;
 
-// SF's temporal difference holds its targets fixed, so that its gradient is none of its loss; but where they are constant it is: with phi
-// constant, and nothing behind. phi's own gradient has a test below.
+// SF's temporal difference holds its targets fixed, so that its gradient is none of its loss; but where they are
+// constant it is: with phi constant, and nothing behind. phi's own gradient has a test below.
 TEST_P(Methods, GradientsAreFiniteDifferences) {
   Network<double> net = network<double>();
   net.shake();
@@ -151,7 +152,8 @@ TEST_P(Methods, InferenceDoesNotDependOnNeighboursOrThreads) {
     net.step(one, steps.batch(), {0.01, 0.1, 1});
     const std::vector<float> together = net.infer(one, steps.batch(), 32);
     EXPECT_EQ(net.infer(two, steps.batch(), 32), together);
-    for (const int at_once : {1, 3, 17}) EXPECT_EQ(net.infer(two, steps.batch(), at_once), together) << at_once << " at once";
+    for (const int at_once : {1, 3, 17})
+      EXPECT_EQ(net.infer(two, steps.batch(), at_once), together) << at_once << " at once";
   }
 }
 
@@ -198,14 +200,17 @@ TEST_P(OneHot, GeneralFormIsTheDirectForm) {
   for (int a = 0; a < shape.actions; ++a) general.parameter("phi")[a * shape.actions + a] = 1;
   const RandomSteps<double> steps(70, shape, 4);
   Parallel parallel(2);
-  const Losses want = direct.step(parallel, steps.batch(), {0.3, 0.5, 0.7}), got = general.step(parallel, steps.batch(), {0.3, 0.5, 0.7});
+  const Losses want = direct.step(parallel, steps.batch(), {0.3, 0.5, 0.7}),
+               got = general.step(parallel, steps.batch(), {0.3, 0.5, 0.7});
   EXPECT_NEAR(got.total, want.total, 1e-12);
   EXPECT_NEAR(got.reward, want.reward, 1e-12);
   EXPECT_NEAR(got.task, want.task, 1e-12);
   EXPECT_LT(relative_error(general.logits, direct.logits), 1e-12);
   for (const TensorInfo& tensor : direct.policy->parameters().tensors())
-    EXPECT_LT(relative_error(general.gradient_of(tensor.name), direct.gradient_of(tensor.name), tensor.size), 1e-11) << tensor.name;
-  EXPECT_LT(relative_error(general.infer(parallel, steps.batch(), 32), direct.infer(parallel, steps.batch(), 32)), 1e-12);
+    EXPECT_LT(relative_error(general.gradient_of(tensor.name), direct.gradient_of(tensor.name), tensor.size), 1e-11)
+        << tensor.name;
+  EXPECT_LT(relative_error(general.infer(parallel, steps.batch(), 32), direct.infer(parallel, steps.batch(), 32)),
+            1e-12);
 }
 
 // ModuleNet with modules that let the seam through: a score is what the mask leaves of 1.
@@ -310,7 +315,8 @@ TEST(SfTemporalDifference, IsTheLossByHand) {
   const size_t width = shape.embedding;
   for (const char* weight : {"phi.out.weight", "psi.out.weight"})
     std::fill_n(sf.net.parameter(weight), shape.head_hidden * shape.actions * width, 0.0);
-  const double *phi = sf.net.parameter("phi.out.bias"), *psi = sf.net.parameter("psi.out.bias"), *task = sf.net.parameter("embedding.task");
+  const double *phi = sf.net.parameter("phi.out.bias"), *psi = sf.net.parameter("psi.out.bias"),
+               *task = sf.net.parameter("embedding.task");
   const auto value = [&](int action, const double* features, int of_task) {
     return std::inner_product(features + action * width, features + (action + 1) * width, task + of_task * width, 0.0);
   };
@@ -324,7 +330,8 @@ TEST(SfTemporalDifference, IsTheLossByHand) {
     if (steps.next[i] == StepBatch<double>::kUnknown) continue;
     ++counted;
     for (size_t c = 0; c < width; ++c) {
-      const double behind = steps.next[i] == StepBatch<double>::kTerminal ? 0 : psi[steps.label[steps.next[i]] * width + c];
+      const double behind =
+          steps.next[i] == StepBatch<double>::kTerminal ? 0 : psi[steps.label[steps.next[i]] * width + c];
       sum += std::pow(psi[steps.taken[i] * width + c] - phi[steps.taken[i] * width + c] - 0.9 * behind, 2);
     }
   }
@@ -339,14 +346,16 @@ TEST(SfTemporalDifference, IsTheLossByHand) {
 
 TEST(SfTemporalDifference, PhiLearnsFromTheRewardAlone) {
   TemporalDifference sf;
-  expect_finite_differences(sf.net, sf.steps.batch(), discounted(0.9, 0.3), [](const Losses& losses) { return 0.3 * losses.reward; },
-                            [](const std::string& name) { return name.starts_with("phi."); });
+  expect_finite_differences(
+      sf.net, sf.steps.batch(), discounted(0.9, 0.3), [](const Losses& losses) { return 0.3 * losses.reward; },
+      [](const std::string& name) { return name.starts_with("phi."); });
 }
 
 TEST(SfTemporalDifference, TargetsAreHeldFixed) {
   // The loss is quadratic in the discount, and so is its own gradient; with targets held fixed it is linear.
   TemporalDifference sf;
-  const std::vector<double> none = sf.gradient(discounted(0)), half = sf.gradient(discounted(0.5)), whole = sf.gradient(discounted(1));
+  const std::vector<double> none = sf.gradient(discounted(0)), half = sf.gradient(discounted(0.5)),
+                            whole = sf.gradient(discounted(1));
   std::vector<double> between(none.size());
   for (size_t i = 0; i < none.size(); ++i) between[i] = (none[i] + whole[i]) / 2;
   EXPECT_LT(relative_error(half, between), 1e-12);
@@ -375,7 +384,8 @@ TEST(Sf, AsksForWhatItsLossNeeds) {
 
 TEST(EveryMethod, ActsAtATemperature) {
   PolicyShape shape = tiny_shape(false);
-  for (const char* method : {"synpo", "mlp", "mtl", "modulenet"}) EXPECT_EQ(make_policy(method, shape)->temperature(), kTemperature);
+  for (const char* method : {"synpo", "mlp", "mtl", "modulenet"})
+    EXPECT_EQ(make_policy(method, shape)->temperature(), kTemperature);
   for (const SfLoss loss : {SfLoss::kTemporalDifference, SfLoss::kPlannerQ, SfLoss::kCrossEntropy}) {
     shape.sf_loss = loss;
     EXPECT_EQ(make_policy("sf", shape)->temperature(), loss == SfLoss::kCrossEntropy ? kTemperature : 0);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <set>
 
-#include "nn/layers/norm.h"
 #include "helpers/policy_fixture.h"
+#include "nn/layers/norm.h"
 
 namespace synpo {
 namespace {
@@ -23,7 +23,8 @@ TEST(SynPo, StatisticsOfTheInputAreThePixels) {
   Parallel parallel(2);
   net.initialise();
   net.step(parallel, steps.batch(), {0.01, 0.1, 1});
-  const size_t mean_at = net.policy->statistics().find("encoder.input.mean")->offset, variance_at = net.policy->statistics().find("encoder.input.variance")->offset;
+  const size_t mean_at = net.policy->statistics().find("encoder.input.mean")->offset,
+               variance_at = net.policy->statistics().find("encoder.input.variance")->offset;
   for (int channel = 0; channel < kViewChannels; ++channel) {
     const double count = 37 * kGridCells;
     double sum = 0, squares = 0;
@@ -37,7 +38,8 @@ TEST(SynPo, StatisticsOfTheInputAreThePixels) {
 }
 
 TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
-  // With nothing but centre taps in the first layer, mean and deviation of a pixel can be put into its weights and the shifts behind them.
+  // With nothing but centre taps in the first layer, mean and deviation of a pixel can be put into its weights and the
+  // shifts behind them.
   PolicyShape shape = tiny_shape(false);
   Network<double> plain(shape);
   shape.normalise_input = true;
@@ -46,8 +48,11 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
   Parallel parallel(1);
   plain.initialise();
   plain.step(parallel, steps.batch(), {0, 0, 0});
-  std::vector<double> mean = random_values<double>(kViewChannels, 1), deviation = random_values<double>(kViewChannels, 2);
-  const auto statistic = [](Network<double>& net, const std::string& name) { return net.statistics.data() + net.policy->statistics().find(name)->offset; };
+  std::vector<double> mean = random_values<double>(kViewChannels, 1),
+                      deviation = random_values<double>(kViewChannels, 2);
+  const auto statistic = [](Network<double>& net, const std::string& name) {
+    return net.statistics.data() + net.policy->statistics().find(name)->offset;
+  };
   for (int c = 0; c < kViewChannels; ++c) {
     statistic(normalised, "encoder.input.mean")[c] = mean[c] = 60 + 50 * mean[c];
     deviation[c] = 70 + 30 * deviation[c];
@@ -56,23 +61,29 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
   for (const TensorInfo& tensor : plain.policy->statistics().tensors())
     std::copy_n(statistic(plain, tensor.name), tensor.size, statistic(normalised, tensor.name));
   const int out = shape.channels[0];
-  double* weights = plain.parameters.data() + plain.policy->parameters().find("encoder.stage1.block1.conv1.weight")->offset;
+  double* weights =
+      plain.parameters.data() + plain.policy->parameters().find("encoder.stage1.block1.conv1.weight")->offset;
   for (int tap = 0; tap < 9; ++tap)
     if (tap != 4) std::fill_n(weights + tap * kViewChannels * out, kViewChannels * out, 0.0);
   normalised.parameters = plain.parameters;
-  for (const auto& [conv, norm] : {std::pair<std::string, std::string>{"conv1", "norm1"}, {"shortcut", "shortcut_norm"}}) {
+  for (const auto& [conv, norm] :
+       {std::pair<std::string, std::string>{"conv1", "norm1"}, {"shortcut", "shortcut_norm"}}) {
     const std::string block = "encoder.stage1.block1.";
-    const auto parameter = [&](const std::string& name) { return plain.parameters.data() + plain.policy->parameters().find(block + name)->offset; };
+    const auto parameter = [&](const std::string& name) {
+      return plain.parameters.data() + plain.policy->parameters().find(block + name)->offset;
+    };
     double* w = parameter(conv + ".weight") + (conv == "conv1" ? 4 * kViewChannels * out : 0);
     for (int c = 0; c < kViewChannels; ++c)
       for (int o = 0; o < out; ++o) {
         double& weight = w[c * out + o];
-        const double slope = parameter(norm + ".scale")[o] / std::sqrt(statistic(plain, block + norm + ".variance")[o] + kNormEpsilon);
+        const double slope =
+            parameter(norm + ".scale")[o] / std::sqrt(statistic(plain, block + norm + ".variance")[o] + kNormEpsilon);
         parameter(norm + ".shift")[o] -= slope * weight * mean[c] / deviation[c];
         weight *= 64 / deviation[c];
       }
   }
-  EXPECT_LT(relative_error(plain.infer(parallel, steps.batch(), 32), normalised.infer(parallel, steps.batch(), 32)), 1e-10);
+  EXPECT_LT(relative_error(plain.infer(parallel, steps.batch(), 32), normalised.infer(parallel, steps.batch(), 32)),
+            1e-10);
 }
 
 TEST(SynPo, StartsAsToldByTheSeed) {

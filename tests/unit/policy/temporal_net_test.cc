@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "nn/buffer.h"
 #include "helpers/numbers.h"
 #include "helpers/policy_fixture.h"
+#include "nn/buffer.h"
 
 namespace synpo {
 namespace {
@@ -29,7 +29,8 @@ std::vector<uint8_t> observations_of(int n, const std::vector<float>& views, con
 // A network over random observations.
 template <class T>
 struct Fixture {
-  Fixture(const TemporalSizes& sizes, int feature, int n) : n(n), net(sizes, feature, layout), views(random_values<float>(size_t(n) * kHistory * sizes.view, 3)) {
+  Fixture(const TemporalSizes& sizes, int feature, int n)
+      : n(n), net(sizes, feature, layout), views(random_values<float>(size_t(n) * kHistory * sizes.view, 3)) {
     Random random(1, Purpose::kBatch);
     for (int i = 0; i < n; ++i) hands.push_back(int(random.below(uint32_t(sizes.objects))));
     observations = observations_of(n, views, hands, sizes.view);
@@ -53,8 +54,10 @@ struct Fixture {
   std::vector<T> parameters, gradient;
 };
 
-// A convolution of kernel 3, stride 2 and padding 1 by its definition, with ReLU: x [length, in] to y [length / 2, out].
-std::vector<double> convolved(const std::vector<double>& x, int length, int in, int out, const double* w, const double* b) {
+// A convolution of kernel 3, stride 2 and padding 1 by its definition, with ReLU: x [length, in] to y [length / 2,
+// out].
+std::vector<double> convolved(const std::vector<double>& x, int length, int in, int out, const double* w,
+                              const double* b) {
   std::vector<double> y(size_t(length / 2) * out);
   for (int t = 0; t < length / 2; ++t)
     for (int o = 0; o < out; ++o) {
@@ -75,7 +78,8 @@ TEST(TemporalNet, IsTable3) {
   const std::vector<double> psi = f.psi(parallel, kFeature);
   for (int i = 0; i < f.n; ++i) {
     const auto first = f.views.begin() + size_t(i) * kHistory * kTiny.view;
-    std::vector<double> x = convolved({first, first + kHistory * kTiny.view}, 4, kTiny.view, kTiny.channels, f.at("encoder.conv1.weight"), f.at("encoder.conv1.bias"));
+    std::vector<double> x = convolved({first, first + kHistory * kTiny.view}, 4, kTiny.view, kTiny.channels,
+                                      f.at("encoder.conv1.weight"), f.at("encoder.conv1.bias"));
     x = convolved(x, 2, kTiny.channels, kTiny.channels, f.at("encoder.conv2.weight"), f.at("encoder.conv2.bias"));
     const double* object = f.at("encoder.object") + size_t(f.hands[i]) * kTiny.object_embedding;
     x.insert(x.end(), object, object + kTiny.object_embedding);
@@ -123,7 +127,8 @@ TEST(TemporalNet, GradientIsThatOfFiniteDifferences) {
       f.parameters[at] = kept - step;
       const double left = loss();
       f.parameters[at] = kept;
-      ASSERT_NEAR(f.gradient[at], (right - left) / (2 * step), 1e-4 * (1 + std::abs(f.gradient[at]))) << tensor.name << " at " << at - tensor.offset;
+      ASSERT_NEAR(f.gradient[at], (right - left) / (2 * step), 1e-4 * (1 + std::abs(f.gradient[at])))
+          << tensor.name << " at " << at - tensor.offset;
     }
 }
 

@@ -11,7 +11,8 @@
 namespace synpo {
 namespace {
 
-// Three points on the line (1, 2) + t (3, 4), at t = -1, 0, 4, so with t - 1 = -2, -1, 3 from their mean and a length of 5 for each unit.
+// Three points on the line (1, 2) + t (3, 4), at t = -1, 0, 4, so with t - 1 = -2, -1, 3 from their mean and a length
+// of 5 for each unit.
 const std::vector<double> kOnALine = {-2, -2, 1, 2, 13, 18};
 
 TEST(Pca, OfALineByHand) {
@@ -59,7 +60,8 @@ TEST(Pca, AgreesWithTheEigenvectorsOfTheCovariance) {
     double along = 0;
     for (int i = 0; i < kColumns; ++i) along += axis(i) * pca.axes[size_t(k) * kColumns + i];
     EXPECT_NEAR(std::abs(along), 1, 1e-8);
-    for (int row = 0; row < kRows; ++row) EXPECT_NEAR(pca.scores[2 * row + k], centred.row(row).dot(axis) * along, 1e-8);
+    for (int row = 0; row < kRows; ++row)
+      EXPECT_NEAR(pca.scores[2 * row + k], centred.row(row).dot(axis) * along, 1e-8);
   }
 }
 
@@ -75,7 +77,8 @@ TEST(Pca, OfEqualRowsAndOfFewerComponentsThanAskedForIsZero) {
 
 TEST(Distances, ByHand) {
   const std::vector<double> rows = {3, 4, 6, 8, -4, 3, -3, -4, 0, 0};
-  const std::vector<double> cosine = distances(rows, 5, 2, Distance::kCosine), euclidean = distances(rows, 5, 2, Distance::kEuclidean);
+  const std::vector<double> cosine = distances(rows, 5, 2, Distance::kCosine),
+                            euclidean = distances(rows, 5, 2, Distance::kEuclidean);
   EXPECT_NEAR(cosine[1], 0, 1e-15);
   EXPECT_NEAR(cosine[2], 1, 1e-15);
   EXPECT_NEAR(cosine[3], 2, 1e-15);

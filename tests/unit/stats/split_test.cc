@@ -37,7 +37,9 @@ struct Seen {
     }
   }
   int least() const {
-    return std::min_element(times.begin(), times.end(), [](const auto& a, const auto& b) { return a.second < b.second; })->second;
+    return std::min_element(times.begin(), times.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; })
+        ->second;
   }
   std::set<std::string> pairs;
   std::map<std::string, int> times;
@@ -60,7 +62,8 @@ TEST(Split, CountIsExactAndCoverKept) {
       for (int64_t count = 1; count <= all; count += 1 + all / 37) {
         const Seen seen(plan(envs, tasks, count, seed));
         EXPECT_EQ(int64_t(seen.pairs.size()), count);
-        EXPECT_GE(seen.least(), std::min({int64_t{4}, shorter, count / longer})) << envs << " x " << tasks << ", " << count << ", seed " << seed;
+        EXPECT_GE(seen.least(), std::min({int64_t{4}, shorter, count / longer}))
+            << envs << " x " << tasks << ", " << count << ", seed " << seed;
       }
       for (int64_t cover = 0; cover <= shorter; ++cover) {
         SplitPlan p = plan(envs, tasks, std::max<int64_t>(1, cover * longer), seed);
@@ -161,7 +164,10 @@ TEST(Split, Quadrants) {
     std::map<std::string, int> count;
     for (const SplitPair& pair : split_pairs(p)) {
       const bool old_env = std::stoi(pair.env.substr(1)) <= 12, old_task = std::stoi(pair.task.substr(1)) <= 10;
-      const std::string part = old_env && old_task ? "P" : setting == 2 ? (old_env != old_task ? "Q" : "rest") : !old_env && !old_task ? "Q" : "rest";
+      const std::string part = old_env && old_task     ? "P"
+                               : setting == 2          ? (old_env != old_task ? "Q" : "rest")
+                               : !old_env && !old_task ? "Q"
+                                                       : "rest";
       EXPECT_EQ(pair.part, part);
       EXPECT_EQ(pair.seen, part != "rest");
       ++count[part];
@@ -205,7 +211,8 @@ TEST(Split, RefusesPlansThatCannotBeMet) {
   EXPECT_EQ(refused(p), "64 setting 1 has no part P");
   p.setting = 3;
   p.p_envs = 5;
-  EXPECT_EQ(refused(p), "64 part P of 5 environments and 3 tasks, expected at least 1 and fewer than the 5 and 5 there are");
+  EXPECT_EQ(refused(p),
+            "64 part P of 5 environments and 3 tasks, expected at least 1 and fewer than the 5 and 5 there are");
   p = plan(2, 2, 2);
   p.envs = {"e1", "e1"};
   EXPECT_EQ(refused(p), "64 the environment 'e1' is named twice");
@@ -217,8 +224,10 @@ TEST(Split, ChoosesNames) {
   EXPECT_EQ(choose_names("--envs", "2", all), (std::vector<std::string>{"map1", "map2"}));
   EXPECT_EQ(choose_names("--envs", "map10,map1", all), (std::vector<std::string>{"map10", "map1"}));
   EXPECT_EQ(thrown([&] { choose_names("--envs", "4", all); }), "64 --envs 4: expected 1 to 3, or names");
-  EXPECT_EQ(thrown([&] { choose_names("--envs", "99999999999999999999", all); }), "64 --envs 99999999999999999999: expected 1 to 3, or names");
-  EXPECT_EQ(thrown([&] { choose_names("--envs", "map3", all); }), "64 --envs: there is no 'map3', expected names such as map1 or a count");
+  EXPECT_EQ(thrown([&] { choose_names("--envs", "99999999999999999999", all); }),
+            "64 --envs 99999999999999999999: expected 1 to 3, or names");
+  EXPECT_EQ(thrown([&] { choose_names("--envs", "map3", all); }),
+            "64 --envs: there is no 'map3', expected names such as map1 or a count");
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include <cmath>
 
+#include "helpers/table_helpers.h"
 #include "stats/interval.h"
 #include "stats/matrix/merge.h"
 #include "stats/matrix/runs.h"
 #include "stats/report/summary.h"
-#include "helpers/table_helpers.h"
 
 namespace synpo {
 namespace {
@@ -48,8 +48,8 @@ TEST(MeanSd, DividesByOneLess) {
   EXPECT_TRUE(std::isnan(mean_sd({}).mean));
 }
 
-MatrixRow row(const std::string& run, const std::string& env, bool seen, int64_t first, int64_t episodes, int64_t successes,
-              int64_t wrong = 0, double reward = 0, int64_t length = 0) {
+MatrixRow row(const std::string& run, const std::string& env, bool seen, int64_t first, int64_t episodes,
+              int64_t successes, int64_t wrong = 0, double reward = 0, int64_t length = 0) {
   MatrixRow r;
   r.run = run;
   r.world = "gridworld";
@@ -75,9 +75,10 @@ Matrix matrix(std::vector<MatrixRow> rows) {
 }
 
 TEST(Merge, AddsRowsThatFollowAndKeepsGaps) {
-  const Matrix merged = merge_matrices({{"a", matrix({row("r1", "e", true, 10, 10, 5, 2, 0.1, 30), row("r1", "f", true, 0, 10, 9)})},
-                                        {"b", matrix({row("r1", "e", true, 0, 10, 7, 1, 0.2, 40), row("r1", "e", true, 30, 5, 1)})},
-                                        {"c", matrix({row("r2", "e", false, 0, 10, 3)})}});
+  const Matrix merged =
+      merge_matrices({{"a", matrix({row("r1", "e", true, 10, 10, 5, 2, 0.1, 30), row("r1", "f", true, 0, 10, 9)})},
+                      {"b", matrix({row("r1", "e", true, 0, 10, 7, 1, 0.2, 40), row("r1", "e", true, 30, 5, 1)})},
+                      {"c", matrix({row("r2", "e", false, 0, 10, 3)})}});
   ASSERT_EQ(merged.rows.size(), 4u);
   EXPECT_EQ(merged.rows[0].first_episode, 0);
   EXPECT_EQ(merged.rows[0].episodes, 20);
@@ -93,8 +94,11 @@ TEST(Merge, AddsRowsThatFollowAndKeepsGaps) {
 
 TEST(Merge, RefusesToCountTwice) {
   const MatrixSource a{"a.tsv", matrix({row("r1", "x", true, 0, 10, 5), row("r1", "e", true, 0, 100, 5)})};
-  EXPECT_EQ(thrown([&] { merge_matrices({a, {"b.tsv", matrix({row("r1", "e", true, 99, 2, 1)})}}); }),
-            "65 a.tsv line 3 and b.tsv line 2 count episodes twice: episodes 0 to 99 and episodes 99 to 100 of pair 'e', 'R-B', "
+  EXPECT_EQ(thrown([&] {
+              merge_matrices({a, {"b.tsv", matrix({row("r1", "e", true, 99, 2, 1)})}});
+            }),
+            "65 a.tsv line 3 and b.tsv line 2 count episodes twice: episodes 0 to 99 and episodes 99 to 100 of pair "
+            "'e', 'R-B', "
             "eval_seed 0, of the same run");
   EXPECT_EQ(thrown([&] { merge_matrices({a, a}); }).substr(0, 49), "65 a.tsv line 2 and a.tsv line 2 count episodes t");
   MatrixRow other = row("r1", "e", true, 0, 100, 5);
@@ -102,17 +106,22 @@ TEST(Merge, RefusesToCountTwice) {
   EXPECT_EQ(merge_matrices({a, {"b.tsv", matrix({other})}}).rows.size(), 3u) << "other episodes altogether";
   MatrixRow unnamed = row("x", "e", true, 0, 100, 5);
   unnamed.run = "";
-  EXPECT_TRUE(thrown([&] { merge_matrices({{"a", matrix({unnamed})}, {"b", matrix({unnamed})}}); })
-                  .ends_with("eval_seed 0 (no run is named: give different runs a column run or seed)"));
+  EXPECT_TRUE(thrown([&] {
+                merge_matrices({{"a", matrix({unnamed})}, {"b", matrix({unnamed})}});
+              }).ends_with("eval_seed 0 (no run is named: give different runs a column run or seed)"));
 }
 
 TEST(Merge, RefusesRunsThatDisagree) {
   const MatrixSource a{"a.tsv", matrix({row("r1", "e", true, 0, 10, 5)})};
   MatrixRow other = row("r1", "f", true, 0, 10, 5);
   other.method = "mlp";
-  EXPECT_EQ(thrown([&] { merge_matrices({a, {"b.tsv", matrix({other})}}); }),
+  EXPECT_EQ(thrown([&] {
+              merge_matrices({a, {"b.tsv", matrix({other})}});
+            }),
             "65 b.tsv line 2: found method 'mlp', expected 'synpo' as in a.tsv line 2, a row of the same run");
-  EXPECT_EQ(thrown([&] { merge_matrices({a, {"b.tsv", matrix({row("r1", "e", false, 10, 10, 5)})}}); }),
+  EXPECT_EQ(thrown([&] {
+              merge_matrices({a, {"b.tsv", matrix({row("r1", "e", false, 10, 10, 5)})}});
+            }),
             "65 b.tsv line 2: found seen '0', expected '1' as in a.tsv line 2, a row of the same run");
 }
 
@@ -133,8 +142,9 @@ TEST(Merge, UnitesUnknownColumns) {
 }
 
 TEST(Summary, OneRun) {
-  const auto groups = summarise(matrix({row("r1", "e", true, 0, 10, 8, 1, 80, 300), row("r1", "f", true, 0, 30, 12, 3, 100, 700),
-                                        row("r1", "g", false, 0, 10, 1, 9, -80, 100)}));
+  const auto groups =
+      summarise(matrix({row("r1", "e", true, 0, 10, 8, 1, 80, 300), row("r1", "f", true, 0, 30, 12, 3, 100, 700),
+                        row("r1", "g", false, 0, 10, 1, 9, -80, 100)}));
   ASSERT_EQ(groups.size(), 1u);
   const SubsetSummary& seen = groups[0].subsets.at(0);
   EXPECT_EQ(seen.name, "seen");
@@ -156,8 +166,9 @@ TEST(Summary, OneRun) {
 }
 
 TEST(Summary, SeveralRuns) {
-  const auto groups = summarise(matrix({row("r1", "e", true, 0, 10, 8, 2, 1, 1), row("r2", "e", true, 0, 10, 6, 4, 1, 1),
-                                        row("r3", "e", true, 0, 20, 8, 12, 1, 1)}));
+  const auto groups =
+      summarise(matrix({row("r1", "e", true, 0, 10, 8, 2, 1, 1), row("r2", "e", true, 0, 10, 6, 4, 1, 1),
+                        row("r3", "e", true, 0, 20, 8, 12, 1, 1)}));
   const SubsetSummary& seen = groups.at(0).subsets.at(0);
   EXPECT_EQ(seen.runs, 3);
   EXPECT_EQ(seen.pairs, 1);
@@ -204,7 +215,8 @@ TEST(Summary, LeavesOutWhatAHandMadeMatrixDoesNotSay) {
   bare.successes = 3;
   const SubsetSummary all = summarise(matrix({bare})).at(0).subsets.at(2);
   EXPECT_DOUBLE_EQ(all.success.pooled, 0.75);
-  for (const Measure* measure : {&all.reward, &all.length, &all.wrong, &all.timeouts}) EXPECT_TRUE(std::isnan(measure->pooled));
+  for (const Measure* measure : {&all.reward, &all.length, &all.wrong, &all.timeouts})
+    EXPECT_TRUE(std::isnan(measure->pooled));
 }
 
 TEST(Summary, WhatSomeRowsDoNotSayIsNotKnownOfAll) {
@@ -214,9 +226,11 @@ TEST(Summary, WhatSomeRowsDoNotSayIsNotKnownOfAll) {
   Tally tally;
   for (const MatrixRow& one : m.rows) tally.add(one);
   EXPECT_DOUBLE_EQ(find_measure("success").value(tally), 0.75);
-  for (const char* name : {"reward", "length", "wrong", "timeouts"}) EXPECT_TRUE(std::isnan(find_measure(name).value(tally))) << name;
+  for (const char* name : {"reward", "length", "wrong", "timeouts"})
+    EXPECT_TRUE(std::isnan(find_measure(name).value(tally))) << name;
   const SubsetSummary all = summarise(m).at(0).subsets.at(2);
-  for (const Measure* measure : {&all.reward, &all.length, &all.wrong, &all.timeouts}) EXPECT_TRUE(std::isnan(measure->pooled));
+  for (const Measure* measure : {&all.reward, &all.length, &all.wrong, &all.timeouts})
+    EXPECT_TRUE(std::isnan(measure->pooled));
 }
 
 TEST(Merge, KeepsRowsApartOfWhichOneSaysLess) {
@@ -230,9 +244,12 @@ TEST(Merge, KeepsRowsApartOfWhichOneSaysLess) {
 }
 
 TEST(Summary, TableHasNoNumberWhereThereIsNone) {
-  const std::string text = written([](Output& output) { write_summary(output, summarise(matrix({row("r1", "e", true, 0, 4, 3, 1, 2, 8)}))); });
-  EXPECT_NE(text.find("gridworld\t1\tsynpo\t0\t0\tunseen\t0\t0\t0\t0\tNA\tNA\tNA\tNA\tNA\tNA\t"), std::string::npos) << text;
-  EXPECT_NE(text.find("\t0.75\t0.75\tNA\t0.5\t0.5\tNA\t2\t2\tNA\t0.25\t0.25\tNA\t0\t0\tNA\n"), std::string::npos) << text;
+  const std::string text = written(
+      [](Output& output) { write_summary(output, summarise(matrix({row("r1", "e", true, 0, 4, 3, 1, 2, 8)}))); });
+  EXPECT_NE(text.find("gridworld\t1\tsynpo\t0\t0\tunseen\t0\t0\t0\t0\tNA\tNA\tNA\tNA\tNA\tNA\t"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("\t0.75\t0.75\tNA\t0.5\t0.5\tNA\t2\t2\tNA\t0.25\t0.25\tNA\t0\t0\tNA\n"), std::string::npos)
+      << text;
 }
 
 }  // namespace

@@ -1,18 +1,18 @@
 #include <cmath>
 
+#include "helpers/table_helpers.h"
 #include "stats/bootstrap.h"
-#include "stats/report/compare.h"
 #include "stats/matrix/filter.h"
+#include "stats/report/compare.h"
 #include "stats/report/margins.h"
 #include "stats/report/method_table.h"
 #include "stats/report/text_table.h"
-#include "helpers/table_helpers.h"
 
 namespace synpo {
 namespace {
 
-MatrixRow row(const std::string& run, uint64_t seed, const std::string& env, const std::string& task, bool seen, int64_t successes,
-              int64_t episodes = 10, const std::string& method = "synpo") {
+MatrixRow row(const std::string& run, uint64_t seed, const std::string& env, const std::string& task, bool seen,
+              int64_t successes, int64_t episodes = 10, const std::string& method = "synpo") {
   MatrixRow r;
   r.run = run;
   r.world = "gridworld";
@@ -39,7 +39,7 @@ TEST(Newcombe, Published) {
   const struct {
     int64_t k1, n1, k2, n2;
     double low, high;
-  } cases[] = {{56, 70, 48, 80, 0.0524, 0.3339}, {9, 10, 3, 10, 0.1705, 0.8090}, {6, 7, 2, 7, 0.0582, 0.8062},
+  } cases[] = {{56, 70, 48, 80, 0.0524, 0.3339}, {9, 10, 3, 10, 0.1705, 0.8090},  {6, 7, 2, 7, 0.0582, 0.8062},
                {5, 56, 0, 29, -0.0381, 0.1926},  {0, 10, 0, 20, -0.1611, 0.2775}, {0, 10, 0, 10, -0.2775, 0.2775},
                {10, 10, 0, 20, 0.6791, 1.0000},  {10, 10, 0, 10, 0.6075, 1.0000}};
   for (const auto& c : cases) {
@@ -108,8 +108,8 @@ TEST(Bootstrap, ManyRunsAsTheFormulaHasIt) {
   EXPECT_NEAR(interval.high, 4.5 + half, 0.03);
 }
 
-// One run fails at everything and one at nothing: drawn whole, the mean of two is 0 in a quarter of the samples; drawn in each of 100
-// pairs on its own it has the variance 1/4 / 2 / 100.
+// One run fails at everything and one at nothing: drawn whole, the mean of two is 0 in a quarter of the samples; drawn
+// in each of 100 pairs on its own it has the variance 1/4 / 2 / 100.
 TEST(Bootstrap, WholeRunsAndPairByPair) {
   const PairValues pairs(100, {{0, 0.0}, {1, 1.0}});
   const Interval whole = bootstrap_mean(pairs, 2, {4000, 1, false}), apart = bootstrap_mean(pairs, 2, {4000, 1, true});
@@ -151,7 +151,8 @@ TEST(Text, RatesAreNeverRoundedToCertainty) {
   EXPECT_EQ(percent(0.999, 0), "99");
   EXPECT_EQ(percent(NAN), "-");
   EXPECT_EQ(spread_text({3, 1, 0}, success()), "100.0 (3 alike)");
-  EXPECT_EQ(spread_text(mean_sd({0.7, 0.7, 0.7, 0.7, 0.7, 0.7}), success()), "70.0 (6 alike)") << "whatever rounding leaves";
+  EXPECT_EQ(spread_text(mean_sd({0.7, 0.7, 0.7, 0.7, 0.7, 0.7}), success()), "70.0 (6 alike)")
+      << "whatever rounding leaves";
   EXPECT_EQ(spread_text(mean_sd({0.9996, 1, 1}), success()), "99.99 +- 0.02");
   EXPECT_EQ(spread_text(mean_sd({0.8, 0.8002}), success()), "80.01 +- 0.01") << "and not 0.0";
   EXPECT_EQ(spread_text({1, 0.8, NAN}, success()), "80.0");
@@ -161,29 +162,33 @@ TEST(Text, RatesAreNeverRoundedToCertainty) {
 }
 
 TEST(Text, TablesInEveryFormat) {
-  const std::vector<std::vector<std::string>> rows = {{"method", "seen %"}, {"a_b|\xc3\xa9", "85.0 +- 1.2"}, {"c", "-"}};
+  const std::vector<std::vector<std::string>> rows = {
+      {"method", "seen %"}, {"a_b|\xc3\xa9", "85.0 +- 1.2"}, {"c", "-"}};
   EXPECT_EQ(table_text(rows), "method       seen %\na_b|\xc3\xa9   85.0 +- 1.2\nc                 -\n");
   EXPECT_EQ(table_text(rows, TableFormat::kMarkdown),
-            "| method  |     seen % |\n| ------- | ---------: |\n| a\\_b\\|\xc3\xa9 | 85.0 \xc2\xb1 1.2 |\n| c       |          - |\n");
+            "| method  |     seen % |\n| ------- | ---------: |\n| a\\_b\\|\xc3\xa9 | 85.0 \xc2\xb1 1.2 |\n| c       | "
+            "         - |\n");
   EXPECT_EQ(table_text(rows, TableFormat::kLatex),
-            "\\begin{tabular}{lr}\n\\toprule\nmethod & seen \\% \\\\\n\\midrule\na\\_b|\xc3\xa9 & 85.0 $\\pm$ 1.2 \\\\\nc & - \\\\\n"
+            "\\begin{tabular}{lr}\n\\toprule\nmethod & seen \\% \\\\\n\\midrule\na\\_b|\xc3\xa9 & 85.0 $\\pm$ 1.2 "
+            "\\\\\nc & - \\\\\n"
             "\\bottomrule\n\\end{tabular}\n");
   EXPECT_EQ(table_text({{"\\&%$#_{}~^"}}, TableFormat::kLatex).substr(28, 51),
             "\\textbackslash{}\\&\\%\\$\\#\\_\\{\\}\\~{}\\^{} \\\\\n\\midrule\n");
 }
 
 TEST(MethodTable, HandComputed) {
-  const Matrix m = matrix({row("r1", 1, "e", "t", true, 10), row("r1", 1, "f", "t", true, 5), row("r2", 2, "e", "t", true, 8),
-                           row("r2", 2, "f", "t", true, 6), row("m1", 1, "e", "t", true, 3, 10, "mlp")});
+  const Matrix m =
+      matrix({row("r1", 1, "e", "t", true, 10), row("r1", 1, "f", "t", true, 5), row("r2", 2, "e", "t", true, 8),
+              row("r2", 2, "f", "t", true, 6), row("m1", 1, "e", "t", true, 3, 10, "mlp")});
   const MethodTable table = tabulate(m, {"seen", "unseen"}, success(), {});
   ASSERT_EQ(table.lines.size(), 2u);
   const TableCell& cell = table.lines[0].cells[0];
   EXPECT_EQ(cell.runs, 2);
   EXPECT_EQ(cell.pairs, 2);
   EXPECT_EQ(cell.episodes, 40);
-  EXPECT_DOUBLE_EQ(cell.over_runs.mean, 0.725);                        // of 0.75 and 0.7
+  EXPECT_DOUBLE_EQ(cell.over_runs.mean, 0.725);  // of 0.75 and 0.7
   EXPECT_NEAR(cell.over_runs.sd, 0.05 / std::sqrt(2.0), 1e-15);
-  EXPECT_DOUBLE_EQ(cell.iqm, 0.7);                                     // of 0.6 and 0.8
+  EXPECT_DOUBLE_EQ(cell.iqm, 0.7);  // of 0.6 and 0.8
   EXPECT_DOUBLE_EQ(cell.interval.low, 0.7);
   EXPECT_DOUBLE_EQ(cell.interval.high, 0.75);
   EXPECT_FALSE(cell.wilson);
@@ -193,15 +198,17 @@ TEST(MethodTable, HandComputed) {
   EXPECT_TRUE(table.lines[1].cells[0].wilson);
   EXPECT_DOUBLE_EQ(table.lines[1].cells[0].interval.low, wilson(3, 10).low);
   const std::string text = method_table_text(table, TableFormat::kText, false);
-  EXPECT_TRUE(text.starts_with("method  runs       seen %   IQM   95 % interval  unseen %  IQM  95 % interval\n"
-                               "synpo      2  72.5 +- 3.5  70.0    70.0 to 75.0         -    -              -\n"
-                               "mlp        1         30.0  30.0  10.8 to 60.3 w         -    -              -\n"))
+  EXPECT_TRUE(
+      text.starts_with("method  runs       seen %   IQM   95 % interval  unseen %  IQM  95 % interval\n"
+                       "synpo      2  72.5 +- 3.5  70.0    70.0 to 75.0         -    -              -\n"
+                       "mlp        1         30.0  30.0  10.8 to 60.3 w         -    -              -\n"))
       << text;
   EXPECT_EQ(method_table_text(table, TableFormat::kText, true).find("IQM"), std::string::npos);
   EXPECT_EQ(method_table_text(table, TableFormat::kLatex, true).substr(0, 2), "% ");
   const std::string tsv = written([&](Output& output) { write_method_table(output, table); });
   EXPECT_NE(tsv.find("gridworld\t1\tmlp\tseen\tsuccess\t1\t1\t10\t0.3\tNA\t0.3\t0.107"), std::string::npos) << tsv;
-  EXPECT_NE(tsv.find("gridworld\t1\tmlp\tunseen\tsuccess\t0\t0\t0\tNA\tNA\tNA\tNA\tNA\tNA\n"), std::string::npos) << tsv;
+  EXPECT_NE(tsv.find("gridworld\t1\tmlp\tunseen\tsuccess\t0\t0\t0\tNA\tNA\tNA\tNA\tNA\tNA\n"), std::string::npos)
+      << tsv;
 }
 
 // Episodes differ in number: every pair counts alike, as the text says.
@@ -215,9 +222,11 @@ TEST(MethodTable, PairsCountAlike) {
 
 TEST(MethodTable, OnlyABootstrapOfFewRunsIsTooNarrow) {
   std::vector<MatrixRow> rows = {row("m", 1, "e", "t", true, 5, 10, "mlp")};
-  for (uint64_t seed = 1; seed <= 12; ++seed) rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 3 + seed % 4));
+  for (uint64_t seed = 1; seed <= 12; ++seed)
+    rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 3 + seed % 4));
   const auto warns = [&] {
-    return method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false).find("too narrow") != std::string::npos;
+    return method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false)
+               .find("too narrow") != std::string::npos;
   };
   EXPECT_FALSE(warns()) << "twelve runs, and one with Wilson's";
   std::swap(rows.front(), rows.back());
@@ -229,12 +238,14 @@ TEST(MethodTable, OnlyABootstrapOfFewRunsIsTooNarrow) {
 TEST(MethodTable, RunsWithoutAFailure) {
   std::vector<MatrixRow> rows;
   for (uint64_t seed : {1, 2, 3}) rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 10));
-  const std::string text = method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false);
+  const std::string text =
+      method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false);
   EXPECT_NE(text.find("100.0 (3 alike)  100.0  88.6 to 100.0 w"), std::string::npos) << text;
 }
 
 TEST(MethodTable, LabelsTellWorldsAndWindowsApart) {
-  Matrix m = matrix({row("r1", 1, "e", "t", true, 5), row("r2", 1, "e", "t", true, 5), row("r3", 1, "e", "t", true, 5, 10, "mlp")});
+  Matrix m = matrix(
+      {row("r1", 1, "e", "t", true, 5), row("r2", 1, "e", "t", true, 5), row("r3", 1, "e", "t", true, 5, 10, "mlp")});
   m.rows[1].window = 2;
   const MethodTable table = tabulate(m, {"seen"}, success(), {});
   EXPECT_EQ(table.lines[0].label, "synpo, window 1");
@@ -246,8 +257,9 @@ TEST(Compare, HandComputed) {
   const MatrixSource a{"a", matrix({row("a", 1, "e", "t", true, 50, 100), row("a", 1, "f", "t", false, 20, 100),
                                     row("a", 1, "g", "t", true, 10, 100), row("a", 1, "h", "t", true, 1, 100),
                                     row("a", 1, "i", "t", true, 1, 100)})};
-  const MatrixSource b{"b", matrix({row("b", 1, "e", "t", true, 60, 100, "mlp"), row("b", 1, "f", "t", false, 70, 100, "mlp"),
-                                    row("b", 1, "g", "t", true, 10, 50, "mlp"), row("b", 1, "h", "t", false, 9, 100, "mlp")})};
+  const MatrixSource b{
+      "b", matrix({row("b", 1, "e", "t", true, 60, 100, "mlp"), row("b", 1, "f", "t", false, 70, 100, "mlp"),
+                   row("b", 1, "g", "t", true, 10, 50, "mlp"), row("b", 1, "h", "t", false, 9, 100, "mlp")})};
   const Comparison c = compare(a, b, false, {});
   EXPECT_TRUE(c.matched);
   EXPECT_EQ(c.other_starts, 1) << "g: 100 episodes and 50";
@@ -268,7 +280,8 @@ TEST(Compare, HandComputed) {
   EXPECT_DOUBLE_EQ(c.pairs[0].interval.low, newcombe(70, 100, 20, 100).low);
   const std::string text = comparison_text(c, 1);
   EXPECT_NE(text.find("f    t     unseen  20 of 100  70 of 100  +50.0  +36.9 to +60.5\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("Left out: 1 pair that only one of the two has; 1 pair seen by one and unseen by the other; 1 pair without common"),
+  EXPECT_NE(text.find("Left out: 1 pair that only one of the two has; 1 pair seen by one and unseen by the other; 1 "
+                      "pair without common"),
             std::string::npos)
       << text;
   EXPECT_EQ(compare(a, b, true, {}).subsets.back().pairs, 3);
@@ -292,14 +305,17 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   MatrixSource b = a;
   b.name = "b.tsv";
   b.matrix.rows[0].world = "kitchen";
-  EXPECT_EQ(thrown([&] { compare(a, b, false, {}); }), "65 b.tsv: found world 'kitchen', expected 'gridworld' as in a.tsv");
-  b.matrix.rows = {row("a", 1, "e", "t", true, 5), row("m", 1, "e", "t", true, 5, 10, "mlp")};
   EXPECT_EQ(thrown([&] { compare(a, b, false, {}); }),
-            "65 b.tsv: rows of several methods, worlds or windows: choose with synpo-matrix filter what is to be compared");
+            "65 b.tsv: found world 'kitchen', expected 'gridworld' as in a.tsv");
+  b.matrix.rows = {row("a", 1, "e", "t", true, 5), row("m", 1, "e", "t", true, 5, 10, "mlp")};
+  EXPECT_EQ(
+      thrown([&] { compare(a, b, false, {}); }),
+      "65 b.tsv: rows of several methods, worlds or windows: choose with synpo-matrix filter what is to be compared");
   b.matrix.rows = {row("b", 1, "e", "t", true, 5)};
   b.matrix.rows[0].eval_seed = 9;
   EXPECT_EQ(thrown([&] { compare(a, b, false, {}); }),
-            "65 a.tsv and b.tsv have no pair with the same start states (eval_seed, first_episode, episodes) and the same seen; "
+            "65 a.tsv and b.tsv have no pair with the same start states (eval_seed, first_episode, episodes) and the "
+            "same seen; "
             "--any-start compares other start states, too");
   EXPECT_EQ(thrown([&] { compare(a, b, true, {}); }), "nothing thrown");
   MatrixSource in_p = a;
@@ -313,8 +329,9 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
 }
 
 TEST(Margins, WorstFirst) {
-  const Matrix m = matrix({row("r1", 1, "e", "t", true, 9), row("r1", 1, "e", "u", false, 1), row("r1", 1, "f", "t", true, 4),
-                           row("r1", 1, "f", "u", true, 10), row("r2", 2, "f", "t", true, 8)});
+  const Matrix m =
+      matrix({row("r1", 1, "e", "t", true, 9), row("r1", 1, "e", "u", false, 1), row("r1", 1, "f", "t", true, 4),
+              row("r1", 1, "f", "u", true, 10), row("r2", 2, "f", "t", true, 8)});
   const auto rows = margins(m, Axis::kTasks), cols = margins(m, Axis::kEnvs);
   ASSERT_EQ(rows.at(0).margins.size(), 2u);
   const Margin& worst = rows[0].margins[0];
@@ -335,7 +352,8 @@ TEST(Margins, WorstFirst) {
 }
 
 TEST(Filter, EveryOptionNarrows) {
-  Matrix m = matrix({row("r1", 1, "e", "t", true, 1), row("r1", 1, "e", "u", false, 2), row("r2", 2, "f", "t", true, 3, 10, "mlp")});
+  Matrix m = matrix(
+      {row("r1", 1, "e", "t", true, 1), row("r1", 1, "e", "u", false, 2), row("r2", 2, "f", "t", true, 3, 10, "mlp")});
   m.has_part = true;
   m.rows[1].part = "Q";
   const auto left = [&](const RowFilter& filter) {
@@ -379,7 +397,8 @@ TEST(Filter, EveryOptionNarrows) {
 }
 
 TEST(Wide, TasksDownAndEnvironmentsAcross) {
-  const Matrix m = matrix({row("r1", 1, "e", "t", true, 1), row("r2", 2, "e", "t", true, 4), row("r1", 1, "f", "u", false, 10)});
+  const Matrix m =
+      matrix({row("r1", 1, "e", "t", true, 1), row("r2", 2, "e", "t", true, 4), row("r1", 1, "f", "u", false, 10)});
   const auto wide = [&](const std::string& measure) {
     return written([&](Output& output) { write_wide(output, m, {"e", "f"}, {"t", "u"}, measure); });
   };

@@ -6,10 +6,10 @@
 #include <filesystem>
 
 #include "format/safetensors.h"
+#include "helpers/numbers.h"
 #include "learn/clipped_objective.h"
 #include "learn/gae.h"
 #include "nn/rmsprop.h"
-#include "helpers/numbers.h"
 
 namespace synpo {
 namespace {
@@ -39,30 +39,38 @@ class TorchPpo : public testing::TestWithParam<std::string> {
 
   SafeTensors dump_;
 };
-INSTANTIATE_TEST_SUITE_P(Dump, TorchPpo, testing::ValuesIn(dumps()), [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
+INSTANTIATE_TEST_SUITE_P(Dump, TorchPpo, testing::ValuesIn(dumps()),
+                         [](const auto& info) { return std::filesystem::path(info.param).stem().string(); });
 
 TEST_P(TorchPpo, AgreesOnAdvantages) {
-  const std::vector<float> reward = get("gae.reward"), value = get("gae.value"), cut_value = get("gae.cut_value"), last_value = get("gae.last_value");
+  const std::vector<float> reward = get("gae.reward"), value = get("gae.value"), cut_value = get("gae.cut_value"),
+                           last_value = get("gae.last_value");
   std::vector<StepEnd> end;
   for (const uint8_t how : get<uint8_t>("gae.end")) end.push_back(StepEnd(how));
-  for (const StepEnd how : {StepEnd::kGoesOn, StepEnd::kTerminated, StepEnd::kTruncated}) ASSERT_TRUE(std::ranges::count(end, how) > 0);
+  for (const StepEnd how : {StepEnd::kGoesOn, StepEnd::kTerminated, StepEnd::kTruncated})
+    ASSERT_TRUE(std::ranges::count(end, how) > 0);
   const int lanes = int(last_value.size()), steps = int(end.size()) / lanes;
   const std::vector<float> got =
-      advantages({steps, lanes, reward.data(), value.data(), end.data(), cut_value.data(), last_value.data()}, {number("discount"), number("lambda")});
+      advantages({steps, lanes, reward.data(), value.data(), end.data(), cut_value.data(), last_value.data()},
+                 {number("discount"), number("lambda")});
   EXPECT_LT(relative_error(got, get<double>("gae.advantage")), 1e-6);
 }
 
 TEST_P(TorchPpo, AgreesOnTheClippedLossAndItsGradients) {
-  const std::vector<float> logits = get("clip.logits"), old = get("clip.old_log_probability"), advantage = get("clip.advantage"),
-                           predicted = get("clip.predicted"), target = get("clip.target");
+  const std::vector<float> logits = get("clip.logits"), old = get("clip.old_log_probability"),
+                           advantage = get("clip.advantage"), predicted = get("clip.predicted"),
+                           target = get("clip.target");
   const std::vector<int> action = whole_numbers("clip.action");
   const int n = int(action.size()), actions = int(logits.size()) / n;
   std::vector<float> dlogits(logits.size()), dpredicted(predicted.size());
   const ClippedLosses got =
-      clipped_objective({n, action.data(), old.data(), advantage.data()}, {number("clip"), number("entropy")}, actions, logits.data(), dlogits.data());
+      clipped_objective({n, action.data(), old.data(), advantage.data()}, {number("clip"), number("entropy")}, actions,
+                        logits.data(), dlogits.data());
   const double value = value_loss(n, predicted.data(), target.data(), dpredicted.data());
-  const std::vector<double> want = get<double>("clip.losses"),
-                            losses = {got.policy, value, got.entropy, got.kl, got.clip_fraction, got.largest_ratio, got.smallest_ratio};
+  const std::vector<double> want = get<double>("clip.losses"), losses = {got.policy,        value,
+                                                                         got.entropy,       got.kl,
+                                                                         got.clip_fraction, got.largest_ratio,
+                                                                         got.smallest_ratio};
   ASSERT_EQ(losses.size(), want.size());
   for (size_t i = 0; i < want.size(); ++i) EXPECT_NEAR(losses[i], want[i], 1e-6 * std::abs(want[i])) << i;
   EXPECT_LT(relative_error(dlogits, get<double>("clip.dlogits")), 1e-6);
@@ -78,8 +86,8 @@ std::vector<T> as(const std::vector<double>& values) {
 template <class T>
 void expect_rmsprop(const SafeTensors& dump, const RmsPropOptions& options, double longest, double limit) {
   Parallel parallel(1);
-  const std::vector<double> start = dump.get<double>("rmsprop.parameter"), gradients = dump.get<double>("rmsprop.gradient"),
-                            after = dump.get<double>("rmsprop.after");
+  const std::vector<double> start = dump.get<double>("rmsprop.parameter"),
+                            gradients = dump.get<double>("rmsprop.gradient"), after = dump.get<double>("rmsprop.after");
   const size_t count = start.size();
   std::vector<T> parameter = as<T>(start), v(count, T(0));
   int clipped = 0, steps = 0;

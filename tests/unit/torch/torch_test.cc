@@ -8,11 +8,11 @@
 #include <sstream>
 
 #include "format/safetensors.h"
-#include "nn/adam.h"
-#include "policy/method/synpo.h"
 #include "helpers/policy_fixture.h"
 #include "helpers/targets.h"
 #include "helpers/temporary.h"
+#include "nn/adam.h"
+#include "policy/method/synpo.h"
 
 namespace synpo {
 namespace {
@@ -29,7 +29,8 @@ class Worst {
     }
   }
   void print() const {
-    for (const auto& [kind, worst] : worst_) std::printf("%-12s %.2e  %s\n", kind.c_str(), worst.first, worst.second.c_str());
+    for (const auto& [kind, worst] : worst_)
+      std::printf("%-12s %.2e  %s\n", kind.c_str(), worst.first, worst.second.c_str());
   }
 
  private:
@@ -44,7 +45,9 @@ PolicyShape shape_of(const SafeTensors& dump) {
     shape.views = {size("view"), size("view_channels"), size("objects"), size("object_embedding"), size("view_hidden")};
   } else {
     const std::string& channels = dump.meta("channels");
-    EXPECT_EQ(std::sscanf(channels.c_str(), "%d,%d,%d,%d", &shape.channels[0], &shape.channels[1], &shape.channels[2], &shape.channels[3]), 4);
+    EXPECT_EQ(std::sscanf(channels.c_str(), "%d,%d,%d,%d", &shape.channels[0], &shape.channels[1], &shape.channels[2],
+                          &shape.channels[3]),
+              4);
   }
   shape.actions = int(dump.tensors.at("logits").shape.at(1));
   shape.envs = size("envs");
@@ -95,16 +98,19 @@ Worst compare_with_dump(const std::string& path) {
   EXPECT_EQ(tensors, layout.tensors().size());
   for (const TensorInfo& tensor : layout.tensors()) {
     dump.get("param." + tensor.name, net.parameters.data() + tensor.offset, tensor.size);
-    EXPECT_EQ(dump.tensors.at("param." + tensor.name).shape, std::vector<int64_t>(tensor.shape.begin(), tensor.shape.end())) << tensor.name;
+    EXPECT_EQ(dump.tensors.at("param." + tensor.name).shape,
+              std::vector<int64_t>(tensor.shape.begin(), tensor.shape.end()))
+        << tensor.name;
   }
   for (const TensorInfo& tensor : net.policy->statistics().tensors())
     std::fill_n(net.statistics.data() + tensor.offset, tensor.size, tensor.name.ends_with(".variance") ? 1.0f : 0.0f);
   const std::vector<uint8_t> observations =
       shape.sight == Sight::kFeatures ? bytes_of(dump.get<float>("input")) : colour_indices(dump.get<uint8_t>("input"));
-  const std::vector<int> env = whole_numbers(dump, "env"), task = whole_numbers(dump, "task"), label = whole_numbers(dump, "label"),
-                         taken = whole_numbers(dump, "taken");
+  const std::vector<int> env = whole_numbers(dump, "env"), task = whole_numbers(dump, "task"),
+                         label = whole_numbers(dump, "label"), taken = whole_numbers(dump, "taken");
   const std::vector<float> reward = dump.get<float>("reward");
-  StepBatch<float> batch = {int(env.size()), observations.data(), env.data(), task.data(), label.data(), taken.data(), reward.data()};
+  StepBatch<float> batch = {int(env.size()), observations.data(), env.data(),   task.data(),
+                            label.data(),    taken.data(),        reward.data()};
   std::vector<int> next;
   std::vector<float> planner_q;
   if (dump.meta("method") == "sf") {
@@ -112,8 +118,8 @@ Worst compare_with_dump(const std::string& path) {
     batch.planner_q = (planner_q = dump.get<float>("planner_q")).data();
   }
   const auto number = [&](const char* name) { return std::atof(dump.meta(name).c_str()); };
-  // No input of a ReLU in the file is so near zero that a float's rounding changes its sign. Coarser products do change some, and gradients with
-  // them: of those, only what stands before the gradients is compared.
+  // No input of a ReLU in the file is so near zero that a float's rounding changes its sign. Coarser products do change
+  // some, and gradients with them: of those, only what stands before the gradients is compared.
   const bool coarse = kernels<float>().product_error > 0x1p-24;
   const double limit = coarse ? 10 * kernels<float>().product_error : 1e-4;
   const auto compare = [&](const std::string& kind, const std::string& name, const float* got) {
@@ -122,18 +128,23 @@ Worst compare_with_dump(const std::string& path) {
   };
 
   Parallel parallel(1);
-  const Losses losses = net.step(parallel, batch, {number("weight_reward"), number("weight_env"), number("weight_task"), 0, number("discount")});
+  const Losses losses = net.step(
+      parallel, batch, {number("weight_reward"), number("weight_env"), number("weight_task"), 0, number("discount")});
   const double got[5] = {losses.total, losses.policy, losses.reward, losses.env, losses.task};
   const std::vector<double> want = dump.get<double>("loss");
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(std::isnan(got[i]), std::isnan(want[i])) << i;
-    if (!std::isnan(want[i])) worst.add("loss", "number " + std::to_string(i), relative_error(got + i, want.data() + i, 1), limit);
+    if (!std::isnan(want[i]))
+      worst.add("loss", "number " + std::to_string(i), relative_error(got + i, want.data() + i, 1), limit);
   }
   compare("logits", "logits", net.logits.data());
-  if (const auto* synpo = dynamic_cast<const SynPo<float>*>(net.policy.get())) compare("psi", "psi", synpo->last_feature());
+  if (const auto* synpo = dynamic_cast<const SynPo<float>*>(net.policy.get()))
+    compare("psi", "psi", synpo->last_feature());
   if (coarse) return worst;
-  for (const TensorInfo& tensor : layout.tensors()) compare("gradient", "grad." + tensor.name, net.gradient.data() + tensor.offset);
-  for (const TensorInfo& tensor : net.policy->statistics().tensors()) compare("statistics", "after." + tensor.name, net.statistics.data() + tensor.offset);
+  for (const TensorInfo& tensor : layout.tensors())
+    compare("gradient", "grad." + tensor.name, net.gradient.data() + tensor.offset);
+  for (const TensorInfo& tensor : net.policy->statistics().tensors())
+    compare("statistics", "after." + tensor.name, net.statistics.data() + tensor.offset);
   const std::vector<float> scores = net.infer(parallel, batch, SynPo<float>::kInferenceUnit);
   compare("inference", "eval_logits", scores.data());
 
@@ -160,10 +171,12 @@ Worst compare_with_dump(const std::string& path) {
   return worst;
 }
 
-// Those of torch_reference.py's COMMITTED, and what SYNPO_TORCH_DUMP names besides, separated by colons: for instance dumps at full width.
+// Those of torch_reference.py's COMMITTED, and what SYNPO_TORCH_DUMP names besides, separated by colons: for instance
+// dumps at full width.
 std::vector<std::string> dumps() {
   std::vector<std::string> paths;
-  for (const char* name : {"narrow", "general", "mtl", "mtl_general", "mlp", "modulenet", "sf_td", "sf_q", "sf_ce", "temporal", "temporal_mlp"})
+  for (const char* name : {"narrow", "general", "mtl", "mtl_general", "mlp", "modulenet", "sf_td", "sf_q", "sf_ce",
+                           "temporal", "temporal_mlp"})
     paths.push_back(std::string("tests/data/torch_") + name + ".safetensors");
   const char* given = std::getenv("SYNPO_TORCH_DUMP");
   std::stringstream list(given ? given : "");

@@ -16,8 +16,10 @@ TEST(KitchenGeometry, MovesOnItsGrid) {
   ASSERT_EQ(tables.poses.size(), kitchen.floor.size() * 12);
   EXPECT_EQ(tables.start_poses.size(), kitchen.floor.size() * 4);
   for (const uint16_t start : tables.start_poses) EXPECT_EQ(tables.poses[start].horizon, 0);
-  const auto leads = [&](int row, int column, int heading, int horizon, int move, int row2, int column2, int heading2, int horizon2) {
-    EXPECT_EQ(tables.next_pose(pose_at(tables, row, column, heading, horizon), move), pose_at(tables, row2, column2, heading2, horizon2));
+  const auto leads = [&](int row, int column, int heading, int horizon, int move, int row2, int column2, int heading2,
+                         int horizon2) {
+    EXPECT_EQ(tables.next_pose(pose_at(tables, row, column, heading, horizon), move),
+              pose_at(tables, row2, column2, heading2, horizon2));
   };
   leads(4, 4, 0, 30, kMoveAhead, 3, 4, 0, 30);
   leads(4, 4, 90, 0, kMoveAhead, 4, 5, 90, 0);
@@ -45,12 +47,15 @@ bool solid(const Kitchen& kitchen, double x, double y, double z, double grow) {
       if (c != 'M') continue;
       const Kitchen::Footprint& foot = kitchen.receptacles[kMicrowave];
       const double gap = 0.12 - grow;
-      if (z < 4.8 + grow && x > foot.column + gap && x < foot.column + foot.columns - gap && y > foot.row + gap && y < foot.row + foot.rows - gap) return true;
+      if (z < 4.8 + grow && x > foot.column + gap && x < foot.column + foot.columns - gap && y > foot.row + gap &&
+          y < foot.row + foot.rows - gap)
+        return true;
     }
   return false;
 }
 
-// What the tables call visible, against a walk along the line of sight in small steps. Where a hair's breadth decides, either may be.
+// What the tables call visible, against a walk along the line of sight in small steps. Where a hair's breadth decides,
+// either may be.
 TEST(KitchenGeometry, SeesWhatNothingHides) {
   std::vector<Kitchen> kitchens = {small_kitchen()};
   for (const int i : {3, 14, 15, 16}) kitchens.push_back(builtin_kitchens()[size_t(i)]);
@@ -64,8 +69,10 @@ TEST(KitchenGeometry, SeesWhatNothingHides) {
         const double dx = at.column - eye.column, dy = at.row - eye.row;
         const double height = (kitchen.at(at.row, at.column) == 't' ? 3 : 3.6) + 0.2, dz = height - 6;
         const double radians = eye.heading * M_PI / 180, pitch = eye.horizon * M_PI / 180;
-        const double ahead = dx * std::sin(radians) - dy * std::cos(radians), right = dx * std::cos(radians) + dy * std::sin(radians);
-        const double depth = ahead * std::cos(pitch) - dz * std::sin(pitch), up = ahead * std::sin(pitch) + dz * std::cos(pitch);
+        const double ahead = dx * std::sin(radians) - dy * std::cos(radians),
+                     right = dx * std::cos(radians) + dy * std::sin(radians);
+        const double depth = ahead * std::cos(pitch) - dz * std::sin(pitch),
+                     up = ahead * std::sin(pitch) + dz * std::cos(pitch);
         const double edge = depth * std::tan(M_PI / 6);
         const bool in_view = std::abs(right) <= edge && std::abs(up) <= edge, near = dx * dx + dy * dy <= 36;
         bool free_thin = true, free_thick = true;
@@ -75,7 +82,8 @@ TEST(KitchenGeometry, SeesWhatNothingHides) {
           free_thick &= !solid(kitchen, eye.column + 0.5 + t * dx, eye.row + 0.5 + t * dy, 6 + t * dz, 0.01);
         }
         const auto list = tables.sight[0]->slots.at(pose);
-        const auto found = std::find_if(list.begin(), list.end(), [&](const KitchenSeen& item) { return item.index == slot; });
+        const auto found =
+            std::find_if(list.begin(), list.end(), [&](const KitchenSeen& item) { return item.index == slot; });
         if (found != list.end()) {
           ++seen;
           ASSERT_TRUE(in_view && near && free_thin) << kitchen.name << " pose " << pose << " slot " << slot;
@@ -86,9 +94,10 @@ TEST(KitchenGeometry, SeesWhatNothingHides) {
         }
       }
       for (const KitchenSeenLists* lists : {&tables.sight[0]->slots, &tables.sight[0]->receptacles})
-        ASSERT_TRUE(std::is_sorted(lists->at(pose).begin(), lists->at(pose).end(), [](const KitchenSeen& a, const KitchenSeen& b) {
-          return std::pair(a.distance, a.index) < std::pair(b.distance, b.index);
-        }));
+        ASSERT_TRUE(std::is_sorted(lists->at(pose).begin(), lists->at(pose).end(),
+                                   [](const KitchenSeen& a, const KitchenSeen& b) {
+                                     return std::pair(a.distance, a.index) < std::pair(b.distance, b.index);
+                                   }));
     }
   }
   EXPECT_GT(seen, 1000);

@@ -179,7 +179,8 @@ TEST(KitchenPlanner, GivesTheSameWithAndWithoutItsMemory) {
   for (int i = 0; i < kStarts; ++i) {
     const KitchenSet fresh({small_kitchen()});
     Random random(9, Purpose::kEpisodeStart, 0, uint64_t(i / 3));
-    expected.push_back(fresh.planner(0).steps_to_success(kitchen_task(i % kKitchenTasks), unpack(fresh.reset(0, random))));
+    expected.push_back(
+        fresh.planner(0).steps_to_success(kitchen_task(i % kKitchenTasks), unpack(fresh.reset(0, random))));
   }
   const KitchenSet shared({small_kitchen()});
   std::vector<std::vector<int>> found(4, std::vector<int>(kStarts));

@@ -7,14 +7,15 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "helpers/kitchen_rooms.h"
-#include "world/kitchen/plan.h"
 #include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/plan.h"
 
 namespace synpo {
 namespace {
 
-const std::pair<int, int> kTable1[] = {{1, 129}, {2, 115},  {3, 104},  {4, 69},  {5, 99},  {6, 134}, {8, 172}, {9, 76},  {11, 67}, {12, 79},
-                                       {18, 222}, {20, 80}, {22, 136}, {23, 96}, {24, 61}, {25, 27}, {27, 43}, {28, 101}, {30, 59}};
+const std::pair<int, int> kTable1[] = {{1, 129}, {2, 115}, {3, 104}, {4, 69},   {5, 99},  {6, 134},  {8, 172},
+                                       {9, 76},  {11, 67}, {12, 79}, {18, 222}, {20, 80}, {22, 136}, {23, 96},
+                                       {24, 61}, {25, 27}, {27, 43}, {28, 101}, {30, 59}};
 
 const KitchenSet& world() {
   static const KitchenSet kitchens;
@@ -74,7 +75,8 @@ TEST(Kitchen, ReadsText) {
   EXPECT_EQ(kitchen.at(5, 3), 't');
   EXPECT_EQ(kitchen.floor.size(), 7u * 5 - 4);
   const Kitchen::Footprint& fridge = kitchen.receptacles[kFridge];
-  EXPECT_EQ((std::array{fridge.row, fridge.column, fridge.rows, fridge.columns, fridge.back}), (std::array{1, 2, 2, 2, 0}));
+  EXPECT_EQ((std::array{fridge.row, fridge.column, fridge.rows, fridge.columns, fridge.back}),
+            (std::array{1, 2, 2, 2, 0}));
   EXPECT_EQ(kitchen.receptacles[kMicrowave].back, 2);
   std::string other = kSmallPlan;
   other.pop_back();
@@ -83,7 +85,9 @@ TEST(Kitchen, ReadsText) {
 }
 
 TEST(Kitchen, RefusesHostileText) {
-  const auto error = [](const std::string& text) { return message_of([&] { KitchenSet({parse_kitchen("k", text, "k.txt")}); }); };
+  const auto error = [](const std::string& text) {
+    return message_of([&] { KitchenSet({parse_kitchen("k", text, "k.txt")}); });
+  };
   const auto with = [](const std::string& from, const std::string& to) {
     std::string text = kSmallPlan;
     text.replace(text.find(from), from.size(), to);
@@ -94,21 +98,26 @@ TEST(Kitchen, RefusesHostileText) {
   EXPECT_EQ(error("##\n##\n"), "k.txt: found no floor");
   EXPECT_EQ(error(std::string(41, '#')), "k.txt: line 1: found 41 characters, expected at most 40");
   EXPECT_EQ(error(std::string(100000, '#')), "k.txt: line 1: found 100000 characters, expected at most 40");
-  EXPECT_EQ(error(std::string(100000, '\n')), "k.txt: found more than 40 lines, expected a kitchen of at most that many");
+  EXPECT_EQ(error(std::string(100000, '\n')),
+            "k.txt: found more than 40 lines, expected a kitchen of at most that many");
   EXPECT_EQ(error("\n\n"), "k.txt: found no floor");
   EXPECT_EQ(error("###\n#.#\n##\n"), "k.txt: line 3: found 2 characters, expected 3 as in line 1");
   EXPECT_EQ(error("###\n#.#\n#.#\n"), "k.txt: line 3, column 2: found '.', expected the outer wall");
   EXPECT_EQ(error("###\nc.#\n###\n"), "k.txt: line 2, column 1: found 'c', expected the outer wall");
   EXPECT_EQ(error(with("tt", "t@")), "k.txt: line 6, column 5: found '@', expected one of # . c t F M S");
-  EXPECT_EQ(error(with("tt", std::string("t\0", 2))), "k.txt: line 6, column 5: found '\\x00', expected one of # . c t F M S");
-  EXPECT_EQ(error(with("#..tt...##\n#..tt...", "#ccttccc##\n#ccttccc")), "k.txt: some floor cells cannot be reached from the others");
+  EXPECT_EQ(error(with("tt", std::string("t\0", 2))),
+            "k.txt: line 6, column 5: found '\\x00', expected one of # . c t F M S");
+  EXPECT_EQ(error(with("#..tt...##\n#..tt...", "#ccttccc##\n#ccttccc")),
+            "k.txt: some floor cells cannot be reached from the others");
   EXPECT_EQ(error(with("SSSc", "SScc")), "k.txt: the cells of the Sink ('S') are not one rectangle of at most 4 x 4");
   EXPECT_EQ(error(with("tt", "tS")), "k.txt: the cells of the Sink ('S') are not one rectangle of at most 4 x 4");
   EXPECT_EQ(error(with("FFcSSSc#\n#cFF", "cccSSSc#\n#ccc")), "k.txt: found no 'F', expected a Fridge");
   // A Fridge behind walls that nobody can open.
-  EXPECT_EQ(error(with("#cFFcSSSc#\n#cFFcSSSc#", "#cFF#SSSc#\n#####SSSc#")), "k: the Fridge cannot be used from everywhere");
+  EXPECT_EQ(error(with("#cFFcSSSc#\n#cFFcSSSc#", "#cFF#SSSc#\n#####SSSc#")),
+            "k: the Fridge cannot be used from everywhere");
   const Kitchen bare = parse_kitchen("bare", "#######\n#FMS..#\n#.....#\n#######\n", "bare");
-  EXPECT_EQ(message_of([&] { KitchenSet({bare}); }), "bare: found 0 places on which an object can lie and be picked up, expected at least 7");
+  EXPECT_EQ(message_of([&] { KitchenSet({bare}); }),
+            "bare: found 0 places on which an object can lie and be picked up, expected at least 7");
   EXPECT_EQ(message_of([] { KitchenSet({small_kitchen(), small_kitchen()}); }), "two environments are named 'small'");
 }
 
@@ -167,8 +176,11 @@ TEST(KitchenRules, MovesCostOneCentAndFailedOnesTwo) {
 }
 
 TEST(KitchenRules, DoorsOpenAndCloseTheNearest) {
-  for (const int pose : {0, 1}) expect_step(kMugToFridge, ring_state(pose, 0, 9), kOpenClose, -2, ring_state(pose, 0, 9));
-  for (const int pose : {2, 3}) {  // the Sink, which has no door, stands before the Fridge in the one, the Microwave behind it in the other
+  for (const int pose : {0, 1})
+    expect_step(kMugToFridge, ring_state(pose, 0, 9), kOpenClose, -2, ring_state(pose, 0, 9));
+  for (const int pose :
+       {2,
+        3}) {  // the Sink, which has no door, stands before the Fridge in the one, the Microwave behind it in the other
     KitchenState open = ring_state(pose, 0, 9);
     open.doors = 1;
     expect_step(kMugToFridge, ring_state(pose, 0, 9), kOpenClose, -1, open);
@@ -179,7 +191,8 @@ TEST(KitchenRules, DoorsOpenAndCloseTheNearest) {
 TEST(KitchenRules, PickupTakesTheNearest) {
   expect_step(kMugToFridge, ring_state(0, 0, 9), kPickupPut, -2, ring_state(0, 0, 9));
   expect_step(kMugToFridge, ring_state(1, 9, 3), kPickupPut, -2, ring_state(1, 9, 3));
-  for (const auto& [mug, tomato] : {std::pair{0, 9}, {1, 0}, {2, 0}, {1, 2}, {2, 1}}) {  // of equally near ones the Mug comes first
+  for (const auto& [mug, tomato] :
+       {std::pair{0, 9}, {1, 0}, {2, 0}, {1, 2}, {2, 1}}) {  // of equally near ones the Mug comes first
     KitchenState after = ring_state(1, kNoSlot, tomato);
     after.hand = 2;
     expect_step(kMugToFridge, ring_state(1, mug, tomato), kPickupPut, 99, after);
@@ -191,7 +204,8 @@ TEST(KitchenRules, PickupTakesTheNearest) {
 
 TEST(KitchenRules, PutFillsTheNearestThatIsOpen) {
   for (const int doors : {0, 1, 2, 3})
-    for (const int pose : {0, 1}) expect_step(kMugToFridge, with_mug(pose, doors), kPickupPut, -2, with_mug(pose, doors));
+    for (const int pose : {0, 1})
+      expect_step(kMugToFridge, with_mug(pose, doors), kPickupPut, -2, with_mug(pose, doors));
   expect_step(kMugToFridge, with_mug(3, 0), kPickupPut, -2, with_mug(3, 0));
   expect_end(kMugToFridge, with_mug(3, 1), 999, true);
   expect_end(kMugToFridge, with_mug(3, 3), 999, true);
@@ -301,8 +315,8 @@ TEST(KitchenSet, RefusesHostileStartPlaces) {
   EXPECT_EQ(error("view", {45, 0}), "'view': found heading 45, horizon 0, with which no episode starts");
   EXPECT_EQ(error("view", {90 + 65536, 0}), "'view': found heading 65626, horizon 0, with which no episode starts");
   EXPECT_EQ(error("Plate", {4, 4}), "'Plate': found row 4, column 4, where no object can lie");
-  EXPECT_EQ(error("Plate", good.at("Mug")),
-            concat("'Plate': found row ", good.at("Mug").first, ", column ", good.at("Mug").second, ", where another object lies"));
+  EXPECT_EQ(error("Plate", good.at("Mug")), concat("'Plate': found row ", good.at("Mug").first, ", column ",
+                                                   good.at("Mug").second, ", where another object lies"));
   EXPECT_EQ(error("Knife", {4, 4}), "found 'Knife', expected agent, view and the seven objects");
   for (const auto& [name, place] : good) {
     StartPlaces places = good;

@@ -68,7 +68,7 @@ TEST(KitchenRay, MeetsThingsWhereTheyStand) {
   expect({0, 1, -6.2f}, Material::kTable, Face::kNorth, 0.5f);
   expect({0.1f, 1, -7.5f}, Material::kFloor, Face::kTop, 0.8f);  // between its legs
   expect({1.5f, -2.5f, -3}, Material::kSink, Face::kTop, 3.04f / 3);
-  expect({2, -1.57f, -2.4f}, Material::kSink, Face::kTop, 1);           // its rim
+  expect({2, -1.57f, -2.4f}, Material::kSink, Face::kTop, 1);             // its rim
   expect({-1.4f, 0.6f, -5}, Material::kTable, Face::kEast, 1.3f / 1.4f);  // a leg
   expect({0, 4.5f, -2}, Material::kMicrowave, Face::kNorth, 3.62f / 4.5f);
 }
@@ -96,11 +96,14 @@ TEST(KitchenView, AgreesWithWhatIsVisible) {
     }
     for (const KitchenSeen& seen : tables.sight[0]->receptacles.at(pose)) {
       const Camera camera(frame.eye.heading / 90, frame.eye.horizon);
-      const SceneView view = {&world().scene(env), float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f, world().scene(env).reach.data(), nullptr};
+      const SceneView view = {&world().scene(env), float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f,
+                              world().scene(env).reach.data(), nullptr};
       int pixels = 0;
       for (int at = 0; at < kSide * kSide; ++at) {
-        const float u = kViewSlope * (float(at % kSide * 2 + 1) / kSide - 1), v = kViewSlope * (float(at / kSide * 2 + 1) / kSide - 1);
-        const Vec3 d = {camera.forward.x + u * camera.right.x + v * camera.up.x, camera.forward.y + u * camera.right.y + v * camera.up.y,
+        const float u = kViewSlope * (float(at % kSide * 2 + 1) / kSide - 1),
+                    v = kViewSlope * (float(at / kSide * 2 + 1) / kSide - 1);
+        const Vec3 d = {camera.forward.x + u * camera.right.x + v * camera.up.x,
+                        camera.forward.y + u * camera.right.y + v * camera.up.y,
                         camera.forward.z + u * camera.right.z + v * camera.up.z};
         pixels += trace(view, scene_cell(frame.eye.row, frame.eye.column), d).material == materials[seen.index];
       }
@@ -162,7 +165,8 @@ TEST(KitchenView, AnObjectIsDrawnInItsColourWhereItLies) {
       for (const Colour& colour : kObjectColours[object]) {
         const uint8_t* pixel = rgb.data() + (at * 101 + 50) * 3;
         const float scale = std::max({colour.r, colour.g, colour.b}) / float(std::max({pixel[0], pixel[1], pixel[2]}));
-        found += std::abs(pixel[0] * scale - colour.r) < 4 && std::abs(pixel[1] * scale - colour.g) < 4 && std::abs(pixel[2] * scale - colour.b) < 4;
+        found += std::abs(pixel[0] * scale - colour.r) < 4 && std::abs(pixel[1] * scale - colour.g) < 4 &&
+                 std::abs(pixel[2] * scale - colour.b) < 4;
       }
     EXPECT_GT(found, 5) << kKitchenObjectNames[object];
   }
@@ -173,7 +177,8 @@ TEST(KitchenView, AnObjectStandsOutAboveItsCounter) {
   KitchenFrame frame;
   frame.eye = {7, 1, 0, 0};
   frame.objects[1] = int16_t(scene_cell(2, 1));
-  // The Lettuce from five cells away: its front, 4.76 cells ahead, up to 1.72 below the eye, where the ray passes its cell above the counter.
+  // The Lettuce from five cells away: its front, 4.76 cells ahead, up to 1.72 below the eye, where the ray passes its
+  // cell above the counter.
   const Picture rgb = picture(scene, frame, 101);
   const uint8_t* pixel = rgb.data() + (int(50.5f + 50.5f * (1.8f / 4.76f) / kViewSlope) * 101 + 50) * 3;
   EXPECT_GT(pixel[1], 3 * pixel[0]);
@@ -229,14 +234,16 @@ TEST(KitchenFeatures, AreOfTheExtractorThatFilesName) { EXPECT_EQ(hex(extractor_
 void expect_bins(const std::vector<float>& features, int cell, const std::map<int, float>& want) {
   for (int bin = 0; bin < 64; ++bin) {
     const auto found = want.find(bin);
-    EXPECT_NEAR(features[size_t(cell * 64 + bin)], found == want.end() ? 0 : found->second, 1e-5) << "cell " << cell << ", bin " << bin;
+    EXPECT_NEAR(features[size_t(cell * 64 + bin)], found == want.end() ? 0 : found->second, 1e-5)
+        << "cell " << cell << ", bin " << bin;
   }
 }
 
 TEST(KitchenFeatures, AreSoftHistogramsOfCells) {
   Picture rgb(kSmallView * kSmallView * 3, 0);
   for (int cell = 0; cell < 32; ++cell) expect_bins(features_of(rgb), cell, {{0, 8.0f}});
-  // Rows 8 to 11 and columns 16 to 23 are cell (2, 2): a quarter of it white, another quarter between two levels of red and at a level of blue.
+  // Rows 8 to 11 and columns 16 to 23 are cell (2, 2): a quarter of it white, another quarter between two levels of red
+  // and at a level of blue.
   const auto paint = [&](int y, Colour colour) {
     for (int x = 16; x < 24; ++x) {
       uint8_t* pixel = rgb.data() + (y * kSmallView + x) * 3;
@@ -248,8 +255,12 @@ TEST(KitchenFeatures, AreSoftHistogramsOfCells) {
   paint(8, {255, 255, 255});
   paint(9, {102, 0, 170});  // a fifth of the way from the second to the third level
   const std::vector<float> features = features_of(rgb);
-  const std::map<int, float> painted = {{0, 8 * std::sqrt(0.5f)}, {16 + 2, 8 * std::sqrt(0.8f / 4)}, {32 + 2, 8 * std::sqrt(0.2f / 4)}, {63, 8 * std::sqrt(0.25f)}};
-  for (int cell = 0; cell < 32; ++cell) expect_bins(features, cell, cell == 2 * 4 + 2 ? painted : std::map<int, float>{{0, 8.0f}});
+  const std::map<int, float> painted = {{0, 8 * std::sqrt(0.5f)},
+                                        {16 + 2, 8 * std::sqrt(0.8f / 4)},
+                                        {32 + 2, 8 * std::sqrt(0.2f / 4)},
+                                        {63, 8 * std::sqrt(0.25f)}};
+  for (int cell = 0; cell < 32; ++cell)
+    expect_bins(features, cell, cell == 2 * 4 + 2 ? painted : std::map<int, float>{{0, 8.0f}});
 }
 
 TEST(KitchenFeatures, TellVisibleThingsApart) {
@@ -264,7 +275,8 @@ TEST(KitchenFeatures, TellVisibleThingsApart) {
     KitchenFrame frame;
     frame.eye = tables.poses[size_t(pose)];
     const KitchenCell& slot = tables.slots[slots[random.below(uint32_t(slots.size()))].index];
-    const size_t one = random.below(kKitchenObjects), other = (one + 1 + random.below(kKitchenObjects - 1)) % kKitchenObjects;
+    const size_t one = random.below(kKitchenObjects),
+                 other = (one + 1 + random.below(kKitchenObjects - 1)) % kKitchenObjects;
     frame.objects[one] = int16_t(scene_cell(slot.row, slot.column));
     const std::vector<float> with_one = features_of(small_picture(world().scene(env), frame));
     std::swap(frame.objects[one], frame.objects[other]);
@@ -289,7 +301,8 @@ TEST(KitchenFeatures, DoNotDependOnWhatIsKeptNorOnThreads) {
       for (int n = 0; n < 2 * kViews; ++n) {
         const uint64_t i = uint64_t(n / 2) * (thread * 6 + 1) % kViews;  // every view twice
         const int env = int(i % 3);
-        wrong[thread] += std::memcmp(view_features(world().scene(env), any_frame(env, i / 2)), expected[i].data(), kViewFeatures * sizeof(float)) != 0;
+        wrong[thread] += std::memcmp(view_features(world().scene(env), any_frame(env, i / 2)), expected[i].data(),
+                                     kViewFeatures * sizeof(float)) != 0;
       }
     });
   for (std::thread& thread : threads) thread.join();
@@ -308,7 +321,8 @@ TEST(KitchenFeatures, AreOfTheirOwnKitchen) {
           frame.eye = {row, 5, heading, 0};
           frame.doors = doors;
           const float* features = view_features(world().scene(env), frame);
-          ASSERT_TRUE(std::equal(features, features + kViewFeatures, features_of(small_picture(world().scene(env), frame)).begin()));
+          ASSERT_TRUE(std::equal(features, features + kViewFeatures,
+                                 features_of(small_picture(world().scene(env), frame)).begin()));
           ++views;
         }
   EXPECT_GT(views, 500);
@@ -329,8 +343,10 @@ TEST(KitchenSet, ObservesTheLastFourViewsAndTheHand) {
     for (int view = 0; view < 4; ++view) {
       const int of = int(step) - 3 + view;
       const std::vector<float> expected =
-          of < 0 ? std::vector<float>(kViewFeatures, 0) : features_of(small_picture(world().scene(env), world().frame(env, states[size_t(of)])));
-      ASSERT_TRUE(std::equal(expected.begin(), expected.end(), observation.begin() + view * kViewFeatures)) << step << " " << view;
+          of < 0 ? std::vector<float>(kViewFeatures, 0)
+                 : features_of(small_picture(world().scene(env), world().frame(env, states[size_t(of)])));
+      ASSERT_TRUE(std::equal(expected.begin(), expected.end(), observation.begin() + view * kViewFeatures))
+          << step << " " << view;
     }
     ASSERT_EQ(observation[4 * kViewFeatures], float(unpack(states.back()).hand));
     for (int i = 1; i < kHandFloats; ++i) ASSERT_EQ(observation[size_t(4 * kViewFeatures + i)], 0);

@@ -72,7 +72,8 @@ TEST(Maze, RefusesOtherTexts) {
   const std::string good = room();
   EXPECT_EQ(maze_refused(""), "65 m.txt: found 0 lines, expected a maze of 16 lines of 16 characters");
   EXPECT_EQ(maze_refused(good.substr(17)), "65 m.txt: found 15 lines, expected a maze of 16 lines of 16 characters");
-  EXPECT_EQ(maze_refused(good + "################\n"), "65 m.txt: found 17 lines, expected a maze of 16 lines of 16 characters");
+  EXPECT_EQ(maze_refused(good + "################\n"),
+            "65 m.txt: found 17 lines, expected a maze of 16 lines of 16 characters");
   std::string wide = good;
   wide.insert(17 + 16, "#");
   EXPECT_EQ(maze_refused(wide), "65 m.txt: line 2: found 17 characters, expected 16");
@@ -80,13 +81,16 @@ TEST(Maze, RefusesOtherTexts) {
   foreign[2 * 17 + 4] = 'x';
   EXPECT_EQ(maze_refused(foreign), "65 m.txt: line 3, column 5: found 'x', expected '#' (wall), ' ' or '@' (floor)");
   foreign[2 * 17 + 4] = '\0';
-  EXPECT_EQ(maze_refused(foreign), "65 m.txt: line 3, column 5: found '\\x00', expected '#' (wall), ' ' or '@' (floor)");
+  EXPECT_EQ(maze_refused(foreign),
+            "65 m.txt: line 3, column 5: found '\\x00', expected '#' (wall), ' ' or '@' (floor)");
   for (const size_t at : {5u, 17u * 15 + 5, 17u * 5, 17u * 5 + 15}) {
     std::string hole = good;
     hole[at] = ' ';
-    EXPECT_EQ(maze_refused(hole), concat("65 m.txt: line ", at / 17 + 1, ", column ", at % 17 + 1, ": found floor, expected the outer wall"));
+    EXPECT_EQ(maze_refused(hole), concat("65 m.txt: line ", at / 17 + 1, ", column ", at % 17 + 1,
+                                         ": found floor, expected the outer wall"));
   }
-  EXPECT_EQ(maze_refused(room({cell(1, 2), cell(2, 1)})), "65 m.txt: some floor cells cannot be reached from the others");
+  EXPECT_EQ(maze_refused(room({cell(1, 2), cell(2, 1)})),
+            "65 m.txt: some floor cells cannot be reached from the others");
   std::string full;
   for (int row = 0; row < 16; ++row) full += row == 3 ? "#@@@@@##########\n" : "################\n";
   EXPECT_EQ(maze_refused(full), "65 m.txt: found 5 floor cells, expected at least 6");
@@ -113,9 +117,11 @@ TEST(Maze, AFolderWithoutMapsIsMissingInput) {
 }
 
 TEST(Maze, NaturalOrder) {
-  const std::vector<std::string> ordered = {"", "1", "2", "10", "a", "map", "map1", "map2", "map2a", "map2a3", "map2a12", "map10", "map11", "map100", "mapa"};
+  const std::vector<std::string> ordered = {"",      "1",      "2",       "10",    "a",     "map",    "map1", "map2",
+                                            "map2a", "map2a3", "map2a12", "map10", "map11", "map100", "mapa"};
   for (size_t i = 0; i < ordered.size(); ++i)
-    for (size_t j = 0; j < ordered.size(); ++j) EXPECT_EQ(natural_less(ordered[i], ordered[j]), i < j) << ordered[i] << " " << ordered[j];
+    for (size_t j = 0; j < ordered.size(); ++j)
+      EXPECT_EQ(natural_less(ordered[i], ordered[j]), i < j) << ordered[i] << " " << ordered[j];
   EXPECT_NE(natural_less("map01", "map1"), natural_less("map1", "map01"));
 }
 
@@ -129,7 +135,8 @@ TEST(GridSet, FindsNames) {
   for (int env = 0; env < world.envs(); ++env)
     for (int task = 0; task < world.task_count(); ++task) numbers.insert(world.pair_number({env, task}));
   EXPECT_EQ(numbers.size(), 400u);
-  EXPECT_EQ(thrown([] { GridSet::open("kitchen"); }), "64 unknown world 'kitchen', expected gridworld or gridworld:DIR");
+  EXPECT_EQ(thrown([] { GridSet::open("kitchen"); }),
+            "64 unknown world 'kitchen', expected gridworld or gridworld:DIR");
   EXPECT_EQ(thrown([] { GridSet({open_maze(), open_maze()}); }), "65 two environments are named 'open'");
 }
 

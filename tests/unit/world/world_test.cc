@@ -23,7 +23,8 @@ const Task kRedBlue = {0, 1};
 
 TEST(GridWorld, MovesUpDownLeftRight) {
   const Maze maze = open_maze();
-  const std::pair<int, uint8_t> moves[] = {{kUp, cell(4, 5)}, {kDown, cell(6, 5)}, {kLeft, cell(5, 4)}, {kRight, cell(5, 6)}};
+  const std::pair<int, uint8_t> moves[] = {
+      {kUp, cell(4, 5)}, {kDown, cell(6, 5)}, {kLeft, cell(5, 4)}, {kRight, cell(5, 6)}};
   for (const auto& [action, to] : moves) {
     GridState state = start_at(cell(5, 5));
     const WorldStep step = grid_step(maze, kRedBlue, state, action);
@@ -146,7 +147,8 @@ TEST(GridWorld, TwoEqualWorldsStepAlike) {
   ASSERT_EQ(a.envs(), b.envs());
   for (int episode = 0; episode < 60; ++episode) {
     const int env = episode % a.envs(), task = episode * 7 % a.task_count();
-    Random start_a(9, Purpose::kEpisodeStart, 1, uint64_t(episode)), start_b(9, Purpose::kEpisodeStart, 1, uint64_t(episode));
+    Random start_a(9, Purpose::kEpisodeStart, 1, uint64_t(episode)),
+        start_b(9, Purpose::kEpisodeStart, 1, uint64_t(episode));
     Random moves(9, Purpose::kNoise, 1, uint64_t(episode));
     GridState state_a = grid_reset(a.maze(env), start_a), state_b = grid_reset(b.maze(env), start_b);
     WorldStep step_a = {}, step_b = {};
@@ -250,7 +252,8 @@ std::vector<int> best_returns(const Maze& maze, const Task& task, const std::arr
           state.picked = uint8_t(picked);
           if (picked) state.now.treasures[task.first] = kPicked;
           const WorldStep step = grid_step(maze, task, state, action);
-          const int sum = step.reward_cents + (step.terminated ? 0 : value[state.picked * kGridCells + state.now.agent]);
+          const int sum =
+              step.reward_cents + (step.terminated ? 0 : value[state.picked * kGridCells + state.now.agent]);
           int& best = value[picked * kGridCells + at];
           if (sum > best) {
             best = sum;
@@ -300,7 +303,8 @@ int colour_of(const Maze& maze, const GridFrame& frame, int radius, int at) {
   if (at == frame.agent) return kAgent;
   for (int i = 0; i < kTreasures; ++i)
     if (frame.treasures[i] != kPicked && frame.treasures[i] == at) return kFirstTreasure + i;
-  const int rows = std::abs(at / kGridSide - frame.agent / kGridSide), columns = std::abs(at % kGridSide - frame.agent % kGridSide);
+  const int rows = std::abs(at / kGridSide - frame.agent / kGridSide),
+            columns = std::abs(at % kGridSide - frame.agent % kGridSide);
   if (rows > radius || columns > radius) return kUnseen;
   return maze.wall[at] ? kWall : kFloor;
 }
@@ -316,7 +320,8 @@ TEST(View, FollowsTheRules) {
     for (const int radius : {0, 1, 2, 16}) {
       uint8_t view[kGridCells];
       draw_view(maze, state.now, radius, view);
-      for (int at = 0; at < kGridCells; ++at) ASSERT_EQ(int(view[at]), colour_of(maze, state.now, radius, at)) << "radius " << radius;
+      for (int at = 0; at < kGridCells; ++at)
+        ASSERT_EQ(int(view[at]), colour_of(maze, state.now, radius, at)) << "radius " << radius;
     }
   }
 }
@@ -367,7 +372,8 @@ TEST(History, NewestIsLastAndMissingOnesAreUnseen) {
     for (int f = 0; f < kHistory; ++f) {
       const int frame = step - (kHistory - 1) + f;
       for (int at = 0; at < kGridCells; ++at)
-        ASSERT_EQ(int(pictures[at * kHistory + f]), frame < 0 ? int(kUnseen) : colour_of(maze, frames[frame], 1, at)) << step;
+        ASSERT_EQ(int(pictures[at * kHistory + f]), frame < 0 ? int(kUnseen) : colour_of(maze, frames[frame], 1, at))
+            << step;
     }
   }
 }

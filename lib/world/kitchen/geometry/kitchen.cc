@@ -7,7 +7,8 @@
 
 namespace synpo {
 
-const char* const kKitchenObjectNames[kKitchenObjects] = {"Container", "Lettuce", "Mug", "Tomato", "Plate", "Apple", "Bowl"};
+const char* const kKitchenObjectNames[kKitchenObjects] = {"Container", "Lettuce", "Mug", "Tomato",
+                                                          "Plate",     "Apple",   "Bowl"};
 const char* const kKitchenReceptacleNames[kKitchenReceptacles] = {"Fridge", "Microwave", "Sink"};
 
 namespace {
@@ -21,7 +22,9 @@ std::vector<std::string> lines_of(const std::string& text, const std::string& wh
     lines.push_back(text.substr(begin, end - begin));
     if (lines.back().ends_with('\r')) lines.back().pop_back();
     begin = end + 1;
-    if (lines.size() > kMaxKitchenSide) fail(Exit::kData, where, ": found more than ", kMaxKitchenSide, " lines, expected a kitchen of at most that many");
+    if (lines.size() > kMaxKitchenSide)
+      fail(Exit::kData, where, ": found more than ", kMaxKitchenSide,
+           " lines, expected a kitchen of at most that many");
   }
   return lines;
 }
@@ -53,7 +56,8 @@ Kitchen::Footprint find_receptacle(const Kitchen& kitchen, int receptacle, const
   if (cells == 0) fail(Exit::kData, where, ": found no '", letter, "', expected a ", name);
   Kitchen::Footprint foot = {top, left, bottom - top + 1, right - left + 1, 0};
   if (cells != foot.rows * foot.columns || foot.rows > kMaxFootprint || foot.columns > kMaxFootprint)
-    fail(Exit::kData, where, ": the cells of the ", name, " ('", letter, "') are not one rectangle of at most ", kMaxFootprint, " x ", kMaxFootprint);
+    fail(Exit::kData, where, ": the cells of the ", name, " ('", letter, "') are not one rectangle of at most ",
+         kMaxFootprint, " x ", kMaxFootprint);
   foot.back = back_of(kitchen, foot);
   return foot;
 }
@@ -80,7 +84,9 @@ bool connected(const Kitchen& kitchen) {
 
 }  // namespace
 
-std::string KitchenTask::name() const { return std::string(kKitchenObjectNames[object]) + '-' + kKitchenReceptacleNames[receptacle]; }
+std::string KitchenTask::name() const {
+  return std::string(kKitchenObjectNames[object]) + '-' + kKitchenReceptacleNames[receptacle];
+}
 
 Kitchen parse_kitchen(const std::string& name, const std::string& text, const std::string& where) {
   const std::vector<std::string> lines = lines_of(text, where);
@@ -89,18 +95,21 @@ Kitchen parse_kitchen(const std::string& name, const std::string& text, const st
   kitchen.name = name;
   kitchen.rows = int(lines.size());
   kitchen.columns = int(std::min<size_t>(lines[0].size(), kMaxKitchenSide + 1));
-  if (kitchen.columns > kMaxKitchenSide) fail(Exit::kData, where, ": line 1: found ", lines[0].size(), " characters, expected at most ", kMaxKitchenSide);
+  if (kitchen.columns > kMaxKitchenSide)
+    fail(Exit::kData, where, ": line 1: found ", lines[0].size(), " characters, expected at most ", kMaxKitchenSide);
   for (int row = 0; row < kitchen.rows; ++row) {
     const std::string& line = lines[size_t(row)];
     if (int(line.size()) != kitchen.columns)
-      fail(Exit::kData, where, ": line ", row + 1, ": found ", line.size(), " characters, expected ", kitchen.columns, " as in line 1");
+      fail(Exit::kData, where, ": line ", row + 1, ": found ", line.size(), " characters, expected ", kitchen.columns,
+           " as in line 1");
     for (int column = 0; column < kitchen.columns; ++column) {
       const char c = line[size_t(column)];
       const auto place = [&] { return concat(where, ": line ", row + 1, ", column ", column + 1, ": "); };
       if (std::string_view("#.ctFMS").find(c) == std::string_view::npos)
         fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected one of # . c t F M S");
       const bool border = row == 0 || row == kitchen.rows - 1 || column == 0 || column == kitchen.columns - 1;
-      if (border && c != '#') fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected the outer wall");
+      if (border && c != '#')
+        fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected the outer wall");
       if (c == '.') kitchen.floor.push_back({int16_t(row), int16_t(column)});
     }
     kitchen.text += line + '\n';

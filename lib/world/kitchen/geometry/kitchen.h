@@ -2,7 +2,8 @@
 //
 // '#' wall   '.' floor   'c' counter   't' table   'F' Fridge   'M' Microwave   'S' Sink
 //
-// Each receptacle is one rectangle. The text is all that makes a kitchen what it is: geometry, places for objects, colours and tables follow from it.
+// Each receptacle is one rectangle. The text is all that makes a kitchen what it is: geometry, places for objects,
+// colours and tables follow from it.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,9 +17,9 @@ constexpr int kMaxKitchenSide = 40;  // cells, outer walls included
 
 constexpr int kKitchenObjects = 7;
 constexpr int kKitchenReceptacles = 3;
-constexpr int kKitchenDoors = 2;     // the first receptacles, which open and close
+constexpr int kKitchenDoors = 2;  // the first receptacles, which open and close
 constexpr int kKitchenTasks = kKitchenObjects * kKitchenReceptacles;
-extern const char* const kKitchenObjectNames[kKitchenObjects];          // in the order of Table 1
+extern const char* const kKitchenObjectNames[kKitchenObjects];  // in the order of Table 1
 extern const char* const kKitchenReceptacleNames[kKitchenReceptacles];
 constexpr char kKitchenReceptacleLetters[kKitchenReceptacles + 1] = "FMS";
 
@@ -55,9 +56,10 @@ struct Kitchen {
 // Row and column of the next cell in a direction, in quarter turns clockwise from north (row 0).
 constexpr int kRowStep[4] = {-1, 0, 1, 0}, kColumnStep[4] = {0, 1, 0, -1};
 
-// Parses a plan; a carriage return before the end of a line and the last newline may be there or not. `where` names the source in messages. Throws
-// kData for lines of different length, more than kMaxKitchenSide rows or columns, a foreign character, an outer wall with a hole, a receptacle that
-// is not one rectangle of at most 4 x 4 cells, or floor that is missing or not connected.
+// Parses a plan; a carriage return before the end of a line and the last newline may be there or not. `where` names the
+// source in messages. Throws kData for lines of different length, more than kMaxKitchenSide rows or columns, a foreign
+// character, an outer wall with a hole, a receptacle that is not one rectangle of at most 4 x 4 cells, or floor that is
+// missing or not connected.
 Kitchen parse_kitchen(const std::string& name, const std::string& text, const std::string& where);
 
 }  // namespace synpo

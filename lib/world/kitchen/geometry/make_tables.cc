@@ -27,7 +27,8 @@ int squared(const KitchenCell& from, const Target& target) {
 }
 
 Vec3 offset(const KitchenCell& from, const Target& target) {
-  return {float(target.x2 - 2 * from.column - 1) / 2, float(target.y2 - 2 * from.row - 1) / 2, target.height - kEyeHeight};
+  return {float(target.x2 - 2 * from.column - 1) / 2, float(target.y2 - 2 * from.row - 1) / 2,
+          target.height - kEyeHeight};
 }
 
 bool clear_ray(const KitchenScene& scene, const KitchenCell& from, const Target& target) {
@@ -50,14 +51,16 @@ void for_every_pose(const Kitchen& kitchen, const KitchenScene& scene, const std
     around.clear();
     for (size_t i = 0; i < targets.size(); ++i) {
       const int distance = squared(from, targets[i]);
-      if (distance <= 4 * kSightCells * kSightCells && clear_ray(scene, from, targets[i])) around.push_back({distance, int(i), offset(from, targets[i])});
+      if (distance <= 4 * kSightCells * kSightCells && clear_ray(scene, from, targets[i]))
+        around.push_back({distance, int(i), offset(from, targets[i])});
     }
     std::stable_sort(around.begin(), around.end(), [](const Near& a, const Near& b) { return a.squared < b.squared; });
     for (int heading = 0; heading < kHeadings; ++heading)
       for (int horizon = 0; horizon < kHorizons; ++horizon) {
         const Camera camera(heading, (horizon - kLevel) * kHorizonDegrees);
         seen.clear();
-        std::copy_if(around.begin(), around.end(), std::back_inserter(seen), [&](const Near& near) { return camera.sees(near.offset); });
+        std::copy_if(around.begin(), around.end(), std::back_inserter(seen),
+                     [&](const Near& near) { return camera.sees(near.offset); });
         use(seen);
       }
   }
@@ -67,7 +70,8 @@ KitchenSeenLists seen_lists(const Kitchen& kitchen, const KitchenScene& scene, c
   KitchenSeenLists lists;
   for_every_pose(kitchen, scene, targets, [&](const std::vector<Near>& seen) {
     for (const Near& near : seen)
-      lists.items.push_back({uint16_t(std::lround(std::sqrt(double(near.squared)) * 500 * double(kCellMetres))), uint8_t(near.target)});
+      lists.items.push_back(
+          {uint16_t(std::lround(std::sqrt(double(near.squared)) * 500 * double(kCellMetres))), uint8_t(near.target)});
     lists.begin.push_back(uint32_t(lists.items.size()));
   });
   return lists;
@@ -83,7 +87,8 @@ std::vector<Target> slot_targets(const Kitchen& kitchen, const std::vector<Kitch
 }
 
 std::vector<Target> receptacle_targets(const Kitchen& kitchen) {
-  static constexpr float heights[kKitchenReceptacles] = {kFridgeHeight / 2, kCounterHeight + kMicrowaveHeight / 2, kCounterHeight};
+  static constexpr float heights[kKitchenReceptacles] = {kFridgeHeight / 2, kCounterHeight + kMicrowaveHeight / 2,
+                                                         kCounterHeight};
   static constexpr Material materials[kKitchenReceptacles] = {Material::kFridge, Material::kMicrowave, Material::kSink};
   std::vector<Target> targets;
   for (size_t i = 0; i < kKitchenReceptacles; ++i) {
@@ -98,10 +103,12 @@ std::vector<KitchenCell> choose_slots(const Kitchen& kitchen, const KitchenScene
   std::vector<KitchenCell> cells;
   for (int row = 0; row < kitchen.rows; ++row)
     for (int column = 0; column < kitchen.columns; ++column)
-      if (kitchen.at(row, column) == 'c' || kitchen.at(row, column) == 't') cells.push_back({int16_t(row), int16_t(column)});
+      if (kitchen.at(row, column) == 'c' || kitchen.at(row, column) == 't')
+        cells.push_back({int16_t(row), int16_t(column)});
   std::vector<bool> nearest(cells.size(), false);
   for_every_pose(kitchen, scene, slot_targets(kitchen, cells), [&](const std::vector<Near>& seen) {
-    if (!seen.empty() && (seen.size() == 1 || seen[0].squared < seen[1].squared)) nearest[size_t(seen[0].target)] = true;
+    if (!seen.empty() && (seen.size() == 1 || seen[0].squared < seen[1].squared))
+      nearest[size_t(seen[0].target)] = true;
   });
   std::vector<KitchenCell> good, slots;
   for (size_t i = 0; i < cells.size(); ++i)
@@ -117,25 +124,28 @@ KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenScene& scene) 
   KitchenTables tables;
   const int cells = int(kitchen.floor.size());
   std::vector<int> floor_index(kSceneCells, -1);
-  for (int i = 0; i < cells; ++i) floor_index[size_t(scene_cell(kitchen.floor[size_t(i)].row, kitchen.floor[size_t(i)].column))] = i;
+  for (int i = 0; i < cells; ++i)
+    floor_index[size_t(scene_cell(kitchen.floor[size_t(i)].row, kitchen.floor[size_t(i)].column))] = i;
   for (int i = 0; i < cells; ++i) {
     const KitchenCell& at = kitchen.floor[size_t(i)];
     for (int heading = 0; heading < kHeadings; ++heading) {
       const int ahead = floor_index[size_t(scene_cell(at.row + kRowStep[heading], at.column + kColumnStep[heading]))];
       for (int horizon = 0; horizon < kHorizons; ++horizon) {
         if (horizon == kLevel) tables.start_poses.push_back(uint16_t(tables.poses.size()));
-        tables.poses.push_back({at.row, at.column, int16_t(heading * 90), int16_t((horizon - kLevel) * kHorizonDegrees)});
-        const int moves[kKitchenMoves] = {pose_of(ahead < 0 ? i : ahead, heading, horizon), pose_of(i, (heading + 3) % kHeadings, horizon),
-                                          pose_of(i, (heading + 1) % kHeadings, horizon), pose_of(i, heading, std::max(horizon - 1, 0)),
-                                          pose_of(i, heading, std::min(horizon + 1, kHorizons - 1))};
+        tables.poses.push_back(
+            {at.row, at.column, int16_t(heading * 90), int16_t((horizon - kLevel) * kHorizonDegrees)});
+        const int moves[kKitchenMoves] = {
+            pose_of(ahead < 0 ? i : ahead, heading, horizon), pose_of(i, (heading + 3) % kHeadings, horizon),
+            pose_of(i, (heading + 1) % kHeadings, horizon), pose_of(i, heading, std::max(horizon - 1, 0)),
+            pose_of(i, heading, std::min(horizon + 1, kHorizons - 1))};
         for (const int to : moves) tables.next.push_back(uint16_t(to));
       }
     }
   }
   tables.slots = choose_slots(kitchen, scene);
   if (int(tables.slots.size()) < kKitchenObjects)
-    fail(Exit::kData, kitchen.name, ": found ", tables.slots.size(), " places on which an object can lie and be picked up, expected at least ",
-         kKitchenObjects);
+    fail(Exit::kData, kitchen.name, ": found ", tables.slots.size(),
+         " places on which an object can lie and be picked up, expected at least ", kKitchenObjects);
   auto sight = std::make_shared<KitchenSight>();
   sight->slots = seen_lists(kitchen, scene, slot_targets(kitchen, tables.slots));
   sight->receptacles = seen_lists(kitchen, scene, receptacle_targets(kitchen));

@@ -1,4 +1,5 @@
-// The colours of kitchens. Floor, walls and furniture have a kitchen's own, pale ones; objects and receptacles strong ones, the same everywhere.
+// The colours of kitchens. Floor, walls and furniture have a kitchen's own, pale ones; objects and receptacles strong
+// ones, the same everywhere.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -23,6 +24,8 @@ extern const Colour kCeilingColour, kInsideColour, kShelfColour;  // inside of a
 extern const std::array<Colour, kKitchenReceptacles> kReceptacleColours;
 extern const std::array<std::array<Colour, 2>, kKitchenObjects> kObjectColours;  // body and trim
 
-inline Colour mix(const Colour& colour, float factor) { return {colour.r * factor, colour.g * factor, colour.b * factor}; }
+inline Colour mix(const Colour& colour, float factor) {
+  return {colour.r * factor, colour.g * factor, colour.b * factor};
+}
 
 }  // namespace synpo

@@ -18,14 +18,16 @@ constexpr float kBasinRim = in_cells(0.035f);
 constexpr float kMicrowaveGap = in_cells(0.03f);
 
 // Where the ray meets a box from outside, not before `from` nor behind `to`.
-bool hit_box(const Vec3& low, const Vec3& high, const Vec3& eye, const Vec3& d, float from, float to, float& t, Face& face) {
+bool hit_box(const Vec3& low, const Vec3& high, const Vec3& eye, const Vec3& d, float from, float to, float& t,
+             Face& face) {
   float enter = -kInfinity, leave = kInfinity;
   const auto slab = [&](float low_side, float high_side, float origin, float step, Face low_face, Face high_face) {
     if (step == 0) {
       if (origin < low_side || origin > high_side) leave = -kInfinity;
       return;
     }
-    const float near = ((step > 0 ? low_side : high_side) - origin) / step, far = ((step > 0 ? high_side : low_side) - origin) / step;
+    const float near = ((step > 0 ? low_side : high_side) - origin) / step,
+                far = ((step > 0 ? high_side : low_side) - origin) / step;
     if (near > enter) {
       enter = near;
       face = step > 0 ? low_face : high_face;
@@ -42,32 +44,48 @@ bool hit_box(const Vec3& low, const Vec3& high, const Vec3& eye, const Vec3& d, 
 
 KitchenScene::Column column_of(char c) {
   switch (c) {
-    case '.': return {};
-    case 't': return {.bottom = kTableUnderside, .top = kTableHeight, .side = Material::kTable, .cover = Material::kTable};
-    case 'F': return {.top = kFridgeHeight, .side = Material::kFridge, .cover = Material::kFridge};
-    case 'S': return {.top = kBasinFloor, .side = Material::kCabinet, .cover = Material::kSink};
-    case '#': return {.top = kInfinity, .side = Material::kWall, .cover = Material::kWall};
-    default: return {.top = kCounterHeight, .side = Material::kCabinet, .cover = Material::kCounterTop};
+    case '.':
+      return {};
+    case 't':
+      return {.bottom = kTableUnderside, .top = kTableHeight, .side = Material::kTable, .cover = Material::kTable};
+    case 'F':
+      return {.top = kFridgeHeight, .side = Material::kFridge, .cover = Material::kFridge};
+    case 'S':
+      return {.top = kBasinFloor, .side = Material::kCabinet, .cover = Material::kSink};
+    case '#':
+      return {.top = kInfinity, .side = Material::kWall, .cover = Material::kWall};
+    default:
+      return {.top = kCounterHeight, .side = Material::kCabinet, .cover = Material::kCounterTop};
   }
 }
 
 // A box in the frame of a footprint: `along` its back from the middle, `out` of the back, heights above the floor.
-SceneBox placed(const Kitchen::Footprint& foot, float along_low, float along_high, float out_low, float out_high, float z_low, float z_high,
-                Material material) {
-  const float top = float(foot.row), left = float(foot.column), bottom = top + float(foot.rows), right = left + float(foot.columns);
+SceneBox placed(const Kitchen::Footprint& foot, float along_low, float along_high, float out_low, float out_high,
+                float z_low, float z_high, Material material) {
+  const float top = float(foot.row), left = float(foot.column), bottom = top + float(foot.rows),
+              right = left + float(foot.columns);
   const float middle_x = (left + right) / 2, middle_y = (top + bottom) / 2;
   switch (foot.back) {
-    case 0: return {{middle_x + along_low, top + out_low, z_low}, {middle_x + along_high, top + out_high, z_high}, material};
-    case 1: return {{right - out_high, middle_y + along_low, z_low}, {right - out_low, middle_y + along_high, z_high}, material};
-    case 2: return {{middle_x + along_low, bottom - out_high, z_low}, {middle_x + along_high, bottom - out_low, z_high}, material};
-    default: return {{left + out_low, middle_y + along_low, z_low}, {left + out_high, middle_y + along_high, z_high}, material};
+    case 0:
+      return {{middle_x + along_low, top + out_low, z_low}, {middle_x + along_high, top + out_high, z_high}, material};
+    case 1:
+      return {
+          {right - out_high, middle_y + along_low, z_low}, {right - out_low, middle_y + along_high, z_high}, material};
+    case 2:
+      return {{middle_x + along_low, bottom - out_high, z_low},
+              {middle_x + along_high, bottom - out_low, z_high},
+              material};
+    default:
+      return {
+          {left + out_low, middle_y + along_low, z_low}, {left + out_high, middle_y + along_high, z_high}, material};
   }
 }
 
 void add_microwave(const Kitchen::Footprint& foot, std::vector<SceneBox>& boxes) {
   const float row = float(foot.row), column = float(foot.column);
   boxes.push_back({{column + kMicrowaveGap, row + kMicrowaveGap, kCounterHeight},
-                   {column + float(foot.columns) - kMicrowaveGap, row + float(foot.rows) - kMicrowaveGap, kCounterHeight + kMicrowaveHeight},
+                   {column + float(foot.columns) - kMicrowaveGap, row + float(foot.rows) - kMicrowaveGap,
+                    kCounterHeight + kMicrowaveHeight},
                    Material::kMicrowave});
 }
 
@@ -91,7 +109,9 @@ void add_sink(const Kitchen::Footprint& foot, std::vector<SceneBox>& boxes) {
 void add_legs(const Kitchen& kitchen, int row, int column, std::vector<SceneBox>& boxes) {
   for (int side = 0; side < 4; ++side) {
     const int next = (side + 1) % 4;
-    if (kitchen.at(row + kRowStep[side], column + kColumnStep[side]) == 't' || kitchen.at(row + kRowStep[next], column + kColumnStep[next]) == 't') continue;
+    if (kitchen.at(row + kRowStep[side], column + kColumnStep[side]) == 't' ||
+        kitchen.at(row + kRowStep[next], column + kColumnStep[next]) == 't')
+      continue;
     const float x = float(column) + (kColumnStep[side] + kColumnStep[next] > 0 ? 1 - kTableLeg : 0);
     const float y = float(row) + (kRowStep[side] + kRowStep[next] > 0 ? 1 - kTableLeg : 0);
     boxes.push_back({{x, y, 0}, {x + kTableLeg, y + kTableLeg, kTableUnderside}, Material::kTable});
@@ -101,8 +121,8 @@ void add_legs(const Kitchen& kitchen, int row, int column, std::vector<SceneBox>
 }  // namespace
 
 KitchenScene::KitchenScene(const Kitchen& kitchen)
-    : columns(kSceneCells), reach(kSceneCells, 0.0f), receptacles(kitchen.receptacles), hash(kitchen.hash), palette(kitchen.hash),
-      cells(kitchen.rows * kSceneStride) {
+    : columns(kSceneCells), reach(kSceneCells, 0.0f), receptacles(kitchen.receptacles), hash(kitchen.hash),
+      palette(kitchen.hash), cells(kitchen.rows * kSceneStride) {
   std::vector<SceneBox> all;
   add_microwave(receptacles[kMicrowave], all);
   add_sink(receptacles[kSink], all);
@@ -117,7 +137,9 @@ KitchenScene::KitchenScene(const Kitchen& kitchen)
       solid.first_box = uint16_t(boxes.size());
       reach[size_t(cell)] = solid.top;
       for (const SceneBox& box : all) {
-        if (box.high.x <= float(column) || box.low.x >= float(column + 1) || box.high.y <= float(row) || box.low.y >= float(row + 1)) continue;
+        if (box.high.x <= float(column) || box.low.x >= float(column + 1) || box.high.y <= float(row) ||
+            box.low.y >= float(row + 1))
+          continue;
         boxes.push_back(box);
         reach[size_t(cell)] = std::max(reach[size_t(cell)], box.high.z);
       }
@@ -146,11 +168,13 @@ void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_i
   Face face;
   for (int i = 0; i < solid.boxes; ++i) {
     const SceneBox& box = view.scene->boxes[size_t(solid.first_box + i)];
-    if (hit_box(box.low, box.high, eye, direction, t_in, t_out, t, face) && t < hit.t) hit = {t, cell, box.material, face, kNoObject};
+    if (hit_box(box.low, box.high, eye, direction, t_in, t_out, t, face) && t < hit.t)
+      hit = {t, cell, box.material, face, kNoObject};
   }
   const uint8_t object = view.occupants ? view.occupants[cell] : kNoObject;
   if (object == kNoObject) return;
-  const Vec3 above = {eye.x - float(cell % kSceneStride) - 0.5f, eye.y - float(cell / kSceneStride) - 0.5f, eye.z - solid.top};
+  const Vec3 above = {eye.x - float(cell % kSceneStride) - 0.5f, eye.y - float(cell / kSceneStride) - 0.5f,
+                      eye.z - solid.top};
   for (const ObjectPart& part : object_parts(object))
     if (hit_box(part.low, part.high, above, direction, t_in, t_out, t, face) && t < hit.t)
       hit = {t, cell, part.trim ? Material::kObjectTrim : Material::kObject, face, object};
@@ -159,7 +183,8 @@ void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_i
 Hit trace(const SceneView& view, int cell, const Vec3& direction) {
   Hit hit;
   for (RayWalk walk(cell, direction);; walk.next()) {
-    const bool may_hit = lowest(direction.z, walk.t_in, walk.t_out) < view.reach[walk.cell] || kEyeHeight + direction.z * walk.t_out >= kRoomHeight;
+    const bool may_hit = lowest(direction.z, walk.t_in, walk.t_out) < view.reach[walk.cell] ||
+                         kEyeHeight + direction.z * walk.t_out >= kRoomHeight;
     if (may_hit && hit_in_cell(view, direction, walk.cell, walk.t_in, walk.t_out, walk.face, hit)) return hit;
   }
 }

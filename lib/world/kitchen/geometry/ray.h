@@ -1,7 +1,7 @@
 // The room of a kitchen as solids on its grid, and the one ray that both draws it and decides what is visible.
 //
-// All lengths are in cells of 0.25 m: x is the column, y the row (south), z the height. A ray starts at the eye, above the middle of a floor cell, and
-// visits the cells on its way one by one.
+// All lengths are in cells of 0.25 m: x is the column, y the row (south), z the height. A ray starts at the eye, above
+// the middle of a floor cell, and visits the cells on its way one by one.
 #pragma once
 #include <array>
 #include <cmath>
@@ -32,7 +32,19 @@ constexpr int kSceneCells = kMaxKitchenSide * kSceneStride;
 constexpr int scene_cell(int row, int column) { return row * kSceneStride + column; }
 constexpr uint8_t kNoObject = 255;
 
-enum class Material : uint8_t { kFloor, kCeiling, kWall, kCabinet, kCounterTop, kTable, kFridge, kMicrowave, kSink, kObject, kObjectTrim };
+enum class Material : uint8_t {
+  kFloor,
+  kCeiling,
+  kWall,
+  kCabinet,
+  kCounterTop,
+  kTable,
+  kFridge,
+  kMicrowave,
+  kSink,
+  kObject,
+  kObjectTrim
+};
 // The side of a solid that a ray meets; the first four are also headings in quarter turns.
 enum class Face : uint8_t { kNorth, kEast, kSouth, kWest, kTop, kBottom };
 
@@ -58,13 +70,13 @@ struct KitchenScene {
     Material side = Material::kFloor, cover = Material::kFloor;
     uint16_t first_box = 0, boxes = 0;  // in `boxes`
   };
-  std::vector<Column> columns;   // [kSceneCells]
-  std::vector<float> reach;      // [kSceneCells]: no ray above it meets anything in the cell
+  std::vector<Column> columns;  // [kSceneCells]
+  std::vector<float> reach;     // [kSceneCells]: no ray above it meets anything in the cell
   std::vector<SceneBox> boxes;
   std::array<Kitchen::Footprint, kKitchenReceptacles> receptacles;
-  uint64_t hash;                 // the kitchen's
+  uint64_t hash;  // the kitchen's
   KitchenPalette palette;
-  int cells;                     // of the rows in use: columns and reach matter that far
+  int cells;  // of the rows in use: columns and reach matter that far
 };
 
 // A scene with objects in it, seen from one place.
@@ -75,7 +87,8 @@ struct SceneView {
   const uint8_t* occupants;  // [kSceneCells]: the object in a cell, or kNoObject; null for none anywhere
 };
 
-// Tallest object, and the middle of an object above what it lies on (for all the same, so that a slot is visible whatever lies on it).
+// Tallest object, and the middle of an object above what it lies on (for all the same, so that a slot is visible
+// whatever lies on it).
 constexpr float kObjectReach = in_cells(0.2f);
 constexpr float kObjectMiddle = in_cells(0.05f);
 
@@ -88,13 +101,14 @@ struct Camera {
 };
 constexpr float kViewSlope = 0.57735026919f;  // half the field of view: tan 30 degrees
 
-// The cells that a ray visits. Crossings are computed by division, so that those of a corner are equal exactly; there the ray goes by column first.
+// The cells that a ray visits. Crossings are computed by division, so that those of a corner are equal exactly; there
+// the ray goes by column first.
 struct RayWalk {
   RayWalk(int from, const Vec3& direction)
       : cell(from), step_x(direction.x > 0 ? 1 : -1), step_y(direction.y > 0 ? kSceneStride : -kSceneStride),
         face_x(direction.x > 0 ? Face::kWest : Face::kEast), face_y(direction.y > 0 ? Face::kNorth : Face::kSouth),
-        length_x(std::fabs(direction.x)), length_y(std::fabs(direction.y)), cross_x(0.5f / length_x), cross_y(0.5f / length_y),
-        t_out(cross_x < cross_y ? cross_x : cross_y) {}
+        length_x(std::fabs(direction.x)), length_y(std::fabs(direction.y)), cross_x(0.5f / length_x),
+        cross_y(0.5f / length_y), t_out(cross_x < cross_y ? cross_x : cross_y) {}
   void next() {
     t_in = t_out;
     if (cross_x <= cross_y) {
@@ -121,7 +135,8 @@ inline float lowest(float dz, float t_in, float t_out) { return kEyeHeight + dz 
 void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit);
 
 // The first thing that a ray from the eye meets in one cell of its way; false for nothing.
-inline bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered, Hit& hit) {
+inline bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered,
+                        Hit& hit) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
   const KitchenScene::Column& solid = view.scene->columns[size_t(cell)];
   const float z_in = kEyeHeight + t_in * direction.z, z_out = kEyeHeight + t_out * direction.z;
@@ -139,8 +154,10 @@ inline bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, 
   } else if (z_out < 0) {
     hit.t = -kEyeHeight / direction.z;
   }
-  if (solid.boxes || (view.occupants && view.occupants[cell] != kNoObject)) hit_boxes(view, direction, cell, t_in, t_out, hit);
-  if (hit.t == kNone && z_out >= kRoomHeight) hit = {(kRoomHeight - kEyeHeight) / direction.z, cell, Material::kCeiling, Face::kBottom, kNoObject};
+  if (solid.boxes || (view.occupants && view.occupants[cell] != kNoObject))
+    hit_boxes(view, direction, cell, t_in, t_out, hit);
+  if (hit.t == kNone && z_out >= kRoomHeight)
+    hit = {(kRoomHeight - kEyeHeight) / direction.z, cell, Material::kCeiling, Face::kBottom, kNoObject};
   return hit.t != kNone;
 }
 

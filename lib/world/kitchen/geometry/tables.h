@@ -1,5 +1,5 @@
-// What the rules of the kitchens run on: tables over the poses of the agent, made once per kitchen. They know no geometry, so that they can be filled
-// from a plan (kitchen_geometry.h) or from a file.
+// What the rules of the kitchens run on: tables over the poses of the agent, made once per kitchen. They know no
+// geometry, so that they can be filled from a plan (kitchen_geometry.h) or from a file.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -33,7 +33,9 @@ struct KitchenSeen {
 struct KitchenSeenLists {
   std::vector<uint32_t> begin = {0};  // [poses + 1]
   std::vector<KitchenSeen> items;
-  std::span<const KitchenSeen> at(int pose) const { return {items.data() + begin[size_t(pose)], items.data() + begin[size_t(pose) + 1]}; }
+  std::span<const KitchenSeen> at(int pose) const {
+    return {items.data() + begin[size_t(pose)], items.data() + begin[size_t(pose) + 1]};
+  }
 };
 
 // What is in sight from every pose while the doors stand in one way.
@@ -45,7 +47,7 @@ struct KitchenTables {
   std::vector<KitchenPose> poses;     // no two alike
   std::vector<KitchenCell> slots;     // where an object may lie; no two alike in a plan
   std::vector<uint16_t> start_poses;  // where an episode may start, all alike likely; ascending
-  std::vector<uint16_t> next;         // [poses, kKitchenMoves]: the pose after a move; the same pose where the move fails
+  std::vector<uint16_t> next;  // [poses, kKitchenMoves]: the pose after a move; the same pose where the move fails
   std::array<std::shared_ptr<const KitchenSight>, kDoorStates> sight;  // by doors; may be one and the same
 
   int pose_count() const { return int(poses.size()); }

@@ -37,7 +37,9 @@ Colour fridge(const Kitchen::Footprint& foot, bool open, Face face, const Vec3& 
   }
   const float from_gap = std::fabs(at.z - in_cells(1.2f));  // between its two doors
   if (from_gap < in_cells(0.01f)) return mix(colour, 0.5f);
-  const bool handle = is_front(foot, face) && std::fabs(side.along - side.length + in_cells(0.07f)) < in_cells(0.015f) && from_gap < in_cells(0.35f);
+  const bool handle = is_front(foot, face) &&
+                      std::fabs(side.along - side.length + in_cells(0.07f)) < in_cells(0.015f) &&
+                      from_gap < in_cells(0.35f);
   return handle ? mix(colour, 1.25f) : colour;
 }
 
@@ -50,7 +52,8 @@ Colour microwave(const Kitchen::Footprint& foot, bool open, Face face, const Vec
     return open && inner ? kInsideColour : colour;
   }
   const OnSide side = on_side(foot, face, at);
-  const bool inner = within(side.along, 0, side.length, 1.5f * kFrame) && within(at.z, kCounterHeight, kCounterHeight + kMicrowaveHeight, kFrame);
+  const bool inner = within(side.along, 0, side.length, 1.5f * kFrame) &&
+                     within(at.z, kCounterHeight, kCounterHeight + kMicrowaveHeight, kFrame);
   if (open) return inner ? kInsideColour : colour;
   return is_front(foot, face) && inner && side.along < side.length * 0.7f ? mix(colour, 0.8f) : colour;
 }
@@ -76,7 +79,8 @@ Colour wall(const KitchenPalette& palette, int cell, Face face, const Vec3& at) 
   const Colour& panel = palette.panels[mixed >> 29];
   const float in_panel = (along_row ? at.x : at.y) - float(along * kPanelCells);
   if (!within(in_panel, 0, kPanelCells, 0.15f)) return palette.wall;
-  return within(in_panel, 0, kPanelCells, 0.35f) && within(at.z, kPanelLow, kPanelHigh, 0.2f) ? panel : mix(panel, 0.6f);
+  return within(in_panel, 0, kPanelCells, 0.35f) && within(at.z, kPanelLow, kPanelHigh, 0.2f) ? panel
+                                                                                              : mix(panel, 0.6f);
 }
 
 }  // namespace
@@ -84,23 +88,44 @@ Colour wall(const KitchenPalette& palette, int cell, Face face, const Vec3& at) 
 Colour colour_of_hit(const SceneView& view, int doors, const Hit& hit, const Vec3& direction, float length) {
   const KitchenScene& scene = *view.scene;
   const KitchenPalette& palette = scene.palette;
-  const Vec3 at = {view.eye_x + hit.t * direction.x, view.eye_y + hit.t * direction.y, kEyeHeight + hit.t * direction.z};
+  const Vec3 at = {view.eye_x + hit.t * direction.x, view.eye_y + hit.t * direction.y,
+                   kEyeHeight + hit.t * direction.z};
   Colour colour = {};
   switch (hit.material) {
     case Material::kFloor:
       colour = palette.floor[size_t(hit.cell / kSceneStride + hit.cell) % 2];
       if (scene.columns[size_t(hit.cell)].bottom > 0) colour = mix(colour, 0.6f);  // under a table
       break;
-    case Material::kCeiling: colour = kCeilingColour; break;
-    case Material::kWall: colour = wall(palette, hit.cell, hit.face, at); break;
-    case Material::kCabinet: colour = cabinet(palette, hit.face, at); break;
-    case Material::kCounterTop: colour = palette.counter_top; break;
-    case Material::kTable: colour = palette.table; break;
-    case Material::kFridge: colour = fridge(scene.receptacles[kFridge], doors >> kFridge & 1, hit.face, at); break;
-    case Material::kMicrowave: colour = microwave(scene.receptacles[kMicrowave], doors >> kMicrowave & 1, hit.face, at); break;
-    case Material::kSink: colour = mix(kReceptacleColours[kSink], at.z < kCounterHeight - in_cells(0.1f) ? 0.7f : 1.0f); break;
-    case Material::kObject: colour = kObjectColours[hit.object][0]; break;
-    case Material::kObjectTrim: colour = kObjectColours[hit.object][1]; break;
+    case Material::kCeiling:
+      colour = kCeilingColour;
+      break;
+    case Material::kWall:
+      colour = wall(palette, hit.cell, hit.face, at);
+      break;
+    case Material::kCabinet:
+      colour = cabinet(palette, hit.face, at);
+      break;
+    case Material::kCounterTop:
+      colour = palette.counter_top;
+      break;
+    case Material::kTable:
+      colour = palette.table;
+      break;
+    case Material::kFridge:
+      colour = fridge(scene.receptacles[kFridge], doors >> kFridge & 1, hit.face, at);
+      break;
+    case Material::kMicrowave:
+      colour = microwave(scene.receptacles[kMicrowave], doors >> kMicrowave & 1, hit.face, at);
+      break;
+    case Material::kSink:
+      colour = mix(kReceptacleColours[kSink], at.z < kCounterHeight - in_cells(0.1f) ? 0.7f : 1.0f);
+      break;
+    case Material::kObject:
+      colour = kObjectColours[hit.object][0];
+      break;
+    case Material::kObjectTrim:
+      colour = kObjectColours[hit.object][1];
+      break;
   }
   static constexpr float by_face[] = {0.86f, 0.74f, 0.86f, 0.74f, 1.0f, 0.95f};
   return mix(colour, by_face[size_t(hit.face)] * std::max(0.55f, 1 - 0.07f * kCellMetres * hit.t * length));

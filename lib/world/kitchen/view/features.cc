@@ -49,7 +49,11 @@ struct KeptView {
 
 uint64_t hash_of(uint64_t kitchen, const KitchenFrame& frame) {
   const int16_t rest[5] = {frame.eye.row, frame.eye.column, frame.eye.heading, frame.eye.horizon, frame.doors};
-  return Hash().add(&kitchen, sizeof kitchen).add(rest, sizeof rest).add(frame.objects.data(), sizeof frame.objects).value();
+  return Hash()
+      .add(&kitchen, sizeof kitchen)
+      .add(rest, sizeof rest)
+      .add(frame.objects.data(), sizeof frame.objects)
+      .value();
 }
 
 }  // namespace

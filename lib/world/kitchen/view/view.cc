@@ -39,7 +39,8 @@ class Furnished {
 // Directions of a picture's rays; their part along the camera's axis is 1.
 class Lens {
  public:
-  Lens(const KitchenPose& pose, int width, int height) : camera_(pose.heading / 90, pose.horizon), width_(width), height_(height) {}
+  Lens(const KitchenPose& pose, int width, int height)
+      : camera_(pose.heading / 90, pose.horizon), width_(width), height_(height) {}
   Vec3 direction(int row, int column) const {
     const float u = across(column, width_), v = -across(row, height_);
     const Vec3 &f = camera_.forward, &r = camera_.right, &a = camera_.up;
@@ -60,7 +61,8 @@ void store(const Colour& colour, uint8_t* rgb) {
   rgb[2] = byte(colour.b);
 }
 
-// The ways of the rays of a small view. The eye always stands in the middle of a cell, so that from every cell they are the same.
+// The ways of the rays of a small view. The eye always stands in the middle of a cell, so that from every cell they are
+// the same.
 class StoredRays {
  public:
   struct Step {
@@ -75,7 +77,7 @@ class StoredRays {
   };
 
   static const StoredRays& of(const KitchenPose& pose) {
-    static const std::array<StoredRays, kHeadings * kHorizons> all = make();
+    static const std::array<StoredRays, kHeadings* kHorizons> all = make();
     return all[size_t(pose.heading / 90 * kHorizons + pose.horizon / 30 + 1)];
   }
   const std::vector<Ray>& rays() const { return rays_; }
@@ -136,7 +138,9 @@ void render_small(const KitchenScene& scene, const KitchenFrame& frame, uint8_t*
     for (const StoredRays::Step* step = first;; ++step) {
       while (step->lowest >= reach[step->offset]) ++step;
       const size_t i = size_t(step - first);
-      if (hit_in_cell(room.view(), ray.direction, room.cell() + step->offset, i ? t_out[i - 1] : 0, t_out[i], step->entered, hit)) break;
+      if (hit_in_cell(room.view(), ray.direction, room.cell() + step->offset, i ? t_out[i - 1] : 0, t_out[i],
+                      step->entered, hit))
+        break;
     }
     store(colour_of_hit(room.view(), frame.doors, hit, ray.direction, ray.length), rgb);
     rgb += 3;

@@ -1,5 +1,6 @@
-// What the agent sees in a kitchen: a pinhole picture of 60 degrees both ways. Colours of floor, walls and counters are the kitchen's own; those of objects
-// and receptacles are the same everywhere. A receptacle that is open shows a dark inside in a frame of its colour. What is in the hand is not drawn.
+// What the agent sees in a kitchen: a pinhole picture of 60 degrees both ways. Colours of floor, walls and counters are
+// the kitchen's own; those of objects and receptacles are the same everywhere. A receptacle that is open shows a dark
+// inside in a frame of its colour. What is in the hand is not drawn.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,7 +14,8 @@ namespace synpo {
 struct KitchenFrame {
   KitchenPose eye = {};
   uint8_t doors = 0;
-  std::array<int16_t, kKitchenObjects> objects = {-1, -1, -1, -1, -1, -1, -1};  // scene_cell() of each, -1 where it does not lie anywhere
+  std::array<int16_t, kKitchenObjects> objects = {
+      -1, -1, -1, -1, -1, -1, -1};  // scene_cell() of each, -1 where it does not lie anywhere
   bool operator==(const KitchenFrame&) const = default;
 };
 
