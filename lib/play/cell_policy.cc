@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "nn/softmax.h"
-#include "world/grid/view.h"
 
 namespace synpo {
 namespace {
@@ -26,20 +25,21 @@ ActionRates rates_of(const float* scores, bool values) {
 
 std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world, EnvTask pair, const GridState& state,
                                      int window, int pictures_each) {
-  constexpr size_t kMost = Policy<float>::kInferenceUnit, kPicture = size_t(kGridCells) * kHistory;
+  constexpr size_t kMost = Policy<float>::kInferenceUnit;
+  const size_t picture = world.observation_size();
   const Maze& maze = world.maze(pair.env);
-  std::vector<uint8_t> pictures(kMost * kPicture);
+  std::vector<uint8_t> pictures(kMost * picture);
   std::vector<float> scores(kMost * kGridActions);
   const std::vector<int> pair_of(kMost, 0);
   std::vector<ActionRates> rates;
   for (size_t first = 0; first < maze.free_cells.size(); first += kMost) {
     const size_t size = std::min(kMost, maze.free_cells.size() - first);
     for (size_t i = 0; i < size; ++i) {
-      GridFrame frame = state.now;
-      frame.agent = maze.free_cells[first + i];
-      GridHistory history;
-      for (int k = 0; k < pictures_each; ++k) history.push(frame);
-      draw_history(maze, history, window, pictures.data() + i * kPicture);
+      GridState here = state;
+      here.now.agent = maze.free_cells[first + i];
+      StateHistory history;
+      for (int k = 0; k < pictures_each; ++k) history.push(to_world_state(here));
+      world.observe(pair.env, history, window, pictures.data() + i * picture);
     }
     policy.infer(0, int(size), pictures.data(), pair_of.data(), scores.data());
     for (size_t i = 0; i < size; ++i)

@@ -67,12 +67,12 @@ void draw_seen(Canvas& canvas, int x, int y, int cell, const Maze& maze, const G
 ViewMoment expert_moment(const Maze& maze, const Task& task, Random random, int64_t steps) {
   const Planner planner(maze);
   ViewMoment moment{maze, task, grid_reset(maze, random), {}, -1};
-  moment.history.push(moment.state.now);
+  moment.history.push(to_world_state(moment.state));
   const int length = planner.steps_to_success(task, moment.state);
   if (steps > length) fail(Exit::kUsage, "the expert's episode ends after ", length, " steps, before step ", steps);
   for (int64_t i = 0; i < steps; ++i) {
     grid_step(maze, task, moment.state, planner.action(task, moment.state));
-    moment.history.push(moment.state.now);
+    moment.history.push(to_world_state(moment.state));
   }
   if (steps < length) moment.expert_action = planner.action(task, moment.state);
   return moment;
@@ -103,8 +103,9 @@ Canvas draw_agent_view(const ViewMoment& moment, const ViewStyle& style, const F
   if (style.history)
     row.draw(canvas, margin, panels_y + side + px(14), "(c) the network's input: the last four pictures",
              moment.history.count, [&](const Box& box, int i, bool missing) {
-               draw_seen(canvas, box.x, box.y, box.width / kGridSide, moment.maze,
-                         missing ? nullptr : &moment.history.frames[i], style.radius);
+               const GridFrame frame = to_grid_state(moment.history.states[i]).now;
+               draw_seen(canvas, box.x, box.y, box.width / kGridSide, moment.maze, missing ? nullptr : &frame,
+                         style.radius);
              });
 
   key.draw(canvas, margin, key_y);

@@ -15,7 +15,7 @@ struct ViewMoment {
   const Maze& maze;
   Task task;
   GridState state;
-  GridHistory history;
+  StateHistory history;
   int expert_action = -1;  // what the expert does next; -1 after the end
 };
 

@@ -28,24 +28,6 @@ uint8_t start_cell(const Maze& maze, const StartPlaces& places, const std::strin
 
 }  // namespace
 
-WorldState to_world_state(const GridState& state) {
-  WorldState out;
-  out.bytes[0] = state.now.agent;
-  std::copy(state.now.treasures.begin(), state.now.treasures.end(), out.bytes.begin() + 1);
-  out.bytes[1 + kTreasures] = state.picked;
-  out.steps = state.steps;
-  return out;
-}
-
-GridState to_grid_state(const WorldState& state) {
-  GridState out;
-  out.now.agent = state.bytes[0];
-  std::copy_n(state.bytes.begin() + 1, kTreasures, out.now.treasures.begin());
-  out.picked = state.bytes[1 + kTreasures];
-  out.steps = state.steps;
-  return out;
-}
-
 GridSet::GridSet(std::vector<Maze> mazes) : mazes_(std::move(mazes)) {
   std::set<std::string> names;
   for (const Maze& maze : mazes_) {
@@ -94,10 +76,7 @@ bool GridSet::at_choice(EnvTask, const WorldState& state) const {
 size_t GridSet::observation_size() const { return size_t(kGridCells) * kHistory; }
 
 void GridSet::observe(int env, const StateHistory& history, int window, uint8_t* observation) const {
-  GridHistory frames;
-  for (int i = 0; i < kHistory; ++i) frames.frames[i] = to_grid_state(history.states[i]).now;
-  frames.count = history.count;
-  draw_history(mazes_[env], frames, window, observation);
+  draw_history(mazes_[env], history, window, observation);
 }
 
 StartPlaces GridSet::start_places(int, const WorldState& start) const {

@@ -8,9 +8,6 @@
 
 namespace synpo {
 
-WorldState to_world_state(const GridState& state);
-GridState to_grid_state(const WorldState& state);
-
 class GridSet : public World {
  public:
   // Throws kData for two mazes of one name.

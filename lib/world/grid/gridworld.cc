@@ -1,8 +1,28 @@
 #include "world/grid/gridworld.h"
 
+#include <algorithm>
+
 namespace synpo {
 
 const char* const kGridActionNames[kGridActions] = {"UP", "DOWN", "LEFT", "RIGHT", "PICK"};
+
+WorldState to_world_state(const GridState& state) {
+  WorldState out;
+  out.bytes[0] = state.now.agent;
+  std::copy(state.now.treasures.begin(), state.now.treasures.end(), out.bytes.begin() + 1);
+  out.bytes[1 + kTreasures] = state.picked;
+  out.steps = state.steps;
+  return out;
+}
+
+GridState to_grid_state(const WorldState& state) {
+  GridState out;
+  out.now.agent = state.bytes[0];
+  std::copy_n(state.bytes.begin() + 1, kTreasures, out.now.treasures.begin());
+  out.picked = state.bytes[1 + kTreasures];
+  out.steps = state.steps;
+  return out;
+}
 
 GridState grid_reset(const Maze& maze, Random& random) {
   const auto any_free_cell = [&] { return maze.free_cells[random.below(uint32_t(maze.free_cells.size()))]; };

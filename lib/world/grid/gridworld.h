@@ -38,6 +38,10 @@ struct GridState {
   bool operator==(const GridState&) const = default;
 };
 
+// A world's bytes: the agent's cell, the treasures' cells, how many are picked; the rest is zero.
+WorldState to_world_state(const GridState& state);
+GridState to_grid_state(const WorldState& state);
+
 // Agent and treasures placed at random, all free cells alike.
 GridState grid_reset(const Maze& maze, Random& random);
 WorldStep grid_step(const Maze& maze, const Task& task, GridState& state, int action);

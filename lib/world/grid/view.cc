@@ -38,16 +38,10 @@ void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t col
   paint(maze, frame, radius, colours, 1);
 }
 
-void draw_history(const Maze& maze, const GridHistory& history, int radius, uint8_t* pictures) {
+void draw_history(const Maze& maze, const StateHistory& history, int radius, uint8_t* pictures) {
   std::memset(pictures, kUnseen, kGridCells * kHistory);
   for (int f = kHistory - history.count; f < kHistory; ++f)
-    paint(maze, history.frames[f], radius, pictures + f, kHistory);
-}
-
-void GridHistory::push(const GridFrame& frame) {
-  std::copy(frames.begin() + 1, frames.end(), frames.begin());
-  frames.back() = frame;
-  count = uint8_t(std::min(count + 1, kHistory));
+    paint(maze, to_grid_state(history.states[f]).now, radius, pictures + f, kHistory);
 }
 
 }  // namespace synpo

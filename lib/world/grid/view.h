@@ -30,15 +30,7 @@ constexpr float kPixelScale = 1.0f / 64;  // "fixed scaling": pixel value to net
 // The colour of every cell, row by row.
 void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]);
 
-// The last four pictures' worth of a running episode, newest last. Before the first step the earlier ones are missing
-// (zero).
-struct GridHistory {
-  std::array<GridFrame, kHistory> frames;
-  uint8_t count = 0;
-  void push(const GridFrame& frame);
-};
-
-// The network's input: colours [16, 16, history], oldest first.
-void draw_history(const Maze& maze, const GridHistory& history, int radius, uint8_t* pictures);
+// The network's input: colours [16, 16, history], oldest first. Pictures from before the first step are black.
+void draw_history(const Maze& maze, const StateHistory& history, int radius, uint8_t* pictures);
 
 }  // namespace synpo

@@ -261,8 +261,8 @@ TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
     ASSERT_EQ(rates.size(), maze.free_cells.size());
     for (size_t i = 0; i < rates.size(); ++i) {
       state.now.agent = maze.free_cells[i];
-      GridHistory history;
-      for (int k = 0; k < pictures_each; ++k) history.push(state.now);
+      StateHistory history;
+      for (int k = 0; k < pictures_each; ++k) history.push(to_world_state(state));
       uint8_t pictures[kGridCells * kHistory];
       draw_history(maze, history, 1, pictures);
       float scores[kGridActions];

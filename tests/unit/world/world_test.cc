@@ -362,11 +362,12 @@ TEST(View, ColoursDiffer) {
 
 TEST(History, NewestIsLastAndMissingOnesAreUnseen) {
   const Maze maze = open_maze();
-  GridHistory history;
+  StateHistory history;
   std::vector<GridFrame> frames;
   for (int step = 0; step < 7; ++step) {
-    frames.push_back(start_at(cell(2, 2 + step)).now);
-    history.push(frames.back());
+    const GridState state = start_at(cell(2, 2 + step));
+    frames.push_back(state.now);
+    history.push(to_world_state(state));
     std::vector<uint8_t> pictures(kGridCells * kHistory, 99);
     draw_history(maze, history, 1, pictures.data());
     for (int f = 0; f < kHistory; ++f) {
