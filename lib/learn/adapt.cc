@@ -180,9 +180,14 @@ Losses Adaptation::through_head(const std::vector<size_t>& drawn) {
                          taken = gathered(taken_, rows);
   const std::vector<float> reward = gathered(reward_, rows), psi = gathered(psi_, rows, size_t(model_.shape.feature));
   logits_.resize(size_t(n) * world_.actions());
-  StepBatch<float> batch = {n, nullptr, env.data(), task.data(), label.data(), taken.data(), reward.data()};
-  batch.psi = psi.data();
-  return model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(), model_.statistics.data(),
+  const StepBatch<float> batch = {.size = n,
+                                  .env = env.data(),
+                                  .task = task.data(),
+                                  .label = label.data(),
+                                  .taken = taken.data(),
+                                  .reward = reward.data(),
+                                  .psi = psi.data()};
+  return model_.policy->step(parallel_, batch, {options_.losses}, model_.parameters.data(), model_.statistics.data(),
                              gradient_.data(), logits_.data());
 }
 

@@ -118,18 +118,18 @@ bool Imitation::update(TrajectoryStream& stream) {
 
   const int n = batch_.size(), actions = world_.actions();
   logits_.grow(size_t(n) * actions);
-  const StepBatch<float> steps = {n,
-                                  batch_.observations.data(),
-                                  batch_.env.data(),
-                                  batch_.task.data(),
-                                  batch_.label.data(),
-                                  batch_.taken.data(),
-                                  batch_.reward.data(),
-                                  model_.seed,
-                                  uint64_t(model_.updates),
-                                  batch_.next.data(),
-                                  batch_.planner_q.data()};
-  const Losses losses = model_.policy->step(parallel_, steps, options_.losses(), model_.parameters.data(),
+  const StepBatch<float> steps = {.size = n,
+                                  .observations = batch_.observations.data(),
+                                  .env = batch_.env.data(),
+                                  .task = batch_.task.data(),
+                                  .label = batch_.label.data(),
+                                  .taken = batch_.taken.data(),
+                                  .reward = batch_.reward.data(),
+                                  .seed = model_.seed,
+                                  .update = uint64_t(model_.updates),
+                                  .next = batch_.next.data(),
+                                  .planner_q = batch_.planner_q.data()};
+  const Losses losses = model_.policy->step(parallel_, steps, options_.step(), model_.parameters.data(),
                                             model_.statistics.data(), gradient_.data(), logits_.data());
   if (!std::isfinite(losses.total))
     fail(Exit::kInternal, "the loss is not finite at update ", model_.updates + 1, ": try a smaller --lr");

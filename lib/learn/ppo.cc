@@ -160,8 +160,13 @@ void Ppo::measure_statistics(int batches) {
       if (lanes_.step(lane, action[i]).ended()) lanes_.restart(lane);
     }
     logits.resize(size_t(n) * actions);
-    StepBatch<float> steps = {
-        n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
+    const StepBatch<float> steps = {.size = n,
+                                    .observations = observations.data(),
+                                    .env = env.data(),
+                                    .task = task.data(),
+                                    .label = action.data(),
+                                    .taken = action.data(),
+                                    .reward = reward.data()};
     model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(),
                         logits.data());
   }
@@ -271,11 +276,16 @@ void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
   const std::vector<float> reward = gathered(rollout_.reward, rows);
   std::vector<float> logits(size_t(n) * actions);
   RolloutObjective objective(*this, rows);
-  StepBatch<float> batch = {
-      n, observations.data(), env.data(), task.data(), action.data(), action.data(), reward.data()};
-  batch.frozen_statistics = true;
-  batch.objective = &objective;
-  const Losses losses = model_.policy->step(parallel_, batch, options_.losses, model_.parameters.data(),
+  const StepBatch<float> batch = {.size = n,
+                                  .observations = observations.data(),
+                                  .env = env.data(),
+                                  .task = task.data(),
+                                  .label = action.data(),
+                                  .taken = action.data(),
+                                  .reward = reward.data(),
+                                  .objective = &objective,
+                                  .frozen_statistics = true};
+  const Losses losses = model_.policy->step(parallel_, batch, {options_.losses}, model_.parameters.data(),
                                             model_.statistics.data(), gradient_.data(), logits.data());
   if (!std::isfinite(losses.total))
     fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");

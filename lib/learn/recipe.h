@@ -31,7 +31,7 @@ struct ImitationOptions {
   // Of single methods.
   double seam = 32, dropout = 0.2, discount = 0.99, sf_loss = 0;
 
-  LossWeights losses() const { return {reward_loss, env_loss, task_loss, dropout, discount}; }
+  StepOptions step() const { return {{reward_loss, env_loss, task_loss}, dropout, discount}; }
   // What part of the schedules is over at update `update` (from 0) of `total`: nothing during the warm-up.
   double done(int64_t update, int64_t total) const;
   // As they are at that update.

@@ -43,6 +43,11 @@ struct InitOptions {
 // The weights lambda of the auxiliary losses (supplement, Section 2).
 struct LossWeights {
   double reward = 0.01, env = 0.1, task = 0.001;
+};
+
+// How a training step learns from its batch.
+struct StepOptions {
+  LossWeights weights = {};
   double dropout = 0;      // ModuleNet: probability that a value at the seam is left out
   double discount = 0.99;  // SF: gamma
 };
@@ -112,7 +117,7 @@ class Policy {
 
   // Forward and backward on a batch. `gradient` is overwritten; `logits` [size, actions] receives the policy's scores.
   // Running statistics move. Bits do not depend on the number of threads.
-  virtual Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+  virtual Losses step(Parallel& parallel, const StepBatch<T>& batch, const StepOptions& options, const T* parameters,
                       T* statistics, T* gradient, T* logits) = 0;
 
   // Takes over parameters for infer(). `pairs` are the (env, task) that will be asked for, numbered as they come.

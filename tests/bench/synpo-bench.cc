@@ -65,8 +65,16 @@ struct RandomBatch {
       else
         draw_features(shape.views, random, observation);
     }
-    batch = {n, observations.data(), env.data(),      task.data(), label.data(), taken.data(), reward.data(), 1,
-             0, next.data(),         planner_q.data()};
+    batch = {.size = n,
+             .observations = observations.data(),
+             .env = env.data(),
+             .task = task.data(),
+             .label = label.data(),
+             .taken = taken.data(),
+             .reward = reward.data(),
+             .seed = 1,
+             .next = next.data(),
+             .planner_q = planner_q.data()};
   }
 
  private:
@@ -122,7 +130,7 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
   int64_t step = 0;
   if (train)
     return rate(n, limit_s, [&] {
-      policy.step(parallel, data.batch, options.losses(), parameters.data(), statistics.data(), gradient.data(),
+      policy.step(parallel, data.batch, options.step(), parameters.data(), statistics.data(), gradient.data(),
                   logits.data());
       adam_step(parallel, {}, ++step, count, gradient.data(), parameters.data(), m.data(), v.data());
     });

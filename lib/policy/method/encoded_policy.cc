@@ -31,7 +31,7 @@ void EncodedPolicy<T>::initialise(const InitOptions& options, T* parameters, T* 
 }
 
 template <class T>
-Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
+Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const StepOptions& options,
                               const T* parameters, T* statistics, T* gradient, T* logits) {
   const size_t size = size_t(batch.size) * shape_.feature;
   std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
@@ -42,17 +42,18 @@ Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, con
   else
     encoder_->forward(parallel, batch.size, batch.observations, parameters, statistics, psi_.grow(size),
                       batch.frozen_statistics);
-  Losses losses = head_step(parallel, batch, weights, parameters, psi_.data(), logits, dpsi, gradient);
+  Losses losses = head_step({parallel, batch, options, parameters, psi_.data(), logits, dpsi, gradient});
   if (!batch.psi) encoder_->backward(parallel, parameters, dpsi, gradient);
-  losses.add_up(weights);
+  losses.add_up(options.weights);
   return losses;
 }
 
 template <class T>
-double EncodedPolicy<T>::score_loss(Parallel& parallel, const StepBatch<T>& batch, const T* psi, const T* logits,
-                                    T* dlogits, T* dpsi) const {
-  if (batch.objective) return batch.objective->apply(parallel, batch.size, psi, logits, dlogits, dpsi);
-  return policy_loss(parallel, batch.size, shape_.actions, logits, batch.label, dlogits);
+double EncodedPolicy<T>::score_loss(const HeadStep<T>& step, T* dlogits) const {
+  const StepBatch<T>& batch = step.batch;
+  if (batch.objective)
+    return batch.objective->apply(step.parallel, batch.size, step.psi, step.logits, dlogits, step.dpsi);
+  return policy_loss(step.parallel, batch.size, shape_.actions, step.logits, batch.label, dlogits);
 }
 
 template <class T>

@@ -11,12 +11,25 @@
 
 namespace synpo {
 
+// The part of a training step behind the encoder: what it reads and where it writes.
+template <class T>
+struct HeadStep {
+  Parallel& parallel;
+  const StepBatch<T>& batch;
+  const StepOptions& options;
+  const T* parameters;
+  const T* psi;  // [size, feature]
+  T* logits;     // [size, actions]; overwritten
+  T* dpsi;       // added to, as the gradient is: zero, or what others have added
+  T* gradient;
+};
+
 template <class T>
 class EncodedPolicy : public Policy<T> {
  public:
   explicit EncodedPolicy(const PolicyShape& shape);
 
-  Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
+  Losses step(Parallel& parallel, const StepBatch<T>& batch, const StepOptions& options, const T* parameters,
               T* statistics, T* gradient, T* logits) final;
   void initialise(const InitOptions& options, T* parameters, T* statistics) const final;
   void prepare_inference(Parallel& parallel, const T* parameters, const T* statistics,
@@ -33,16 +46,13 @@ class EncodedPolicy : public Policy<T> {
 
   // The parameters behind the encoder; all are zero before.
   virtual void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const = 0;
-  // Forward and backward from psi [size, feature]: logits and losses; dpsi += and gradient +=, which are zero or what
-  // others have added.
-  virtual Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
-                           const T* parameters, const T* psi, T* logits, T* dpsi, T* gradient) = 0;
+  // Forward and backward from psi.
+  virtual Losses head_step(const HeadStep<T>& step) = 0;
   virtual void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) = 0;
   virtual void infer_head(int size, const T* psi, const int* pair, T* logits) const = 0;
 
-  // The loss of the scores, the batch's objective or cross-entropy against its labels: dlogits =, dpsi +=.
-  double score_loss(Parallel& parallel, const StepBatch<T>& batch, const T* psi, const T* logits, T* dlogits,
-                    T* dpsi) const;
+  // The loss of the step's logits, the batch's objective or cross-entropy against its labels: dlogits =, dpsi +=.
+  double score_loss(const HeadStep<T>& step, T* dlogits) const;
 
  private:
   PolicyShape shape_;

@@ -36,8 +36,9 @@ double Mlp<T>::make_input(const T* psi, int env, int task, T* x) const {
 }
 
 template <class T>
-Losses Mlp<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                         const T* psi, T* logits, T* dpsi, T* gradient) {
+Losses Mlp<T>::head_step(const HeadStep<T>& step) {
+  const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
+  const LossWeights& weights = options.weights;
   const int n = batch.size, d = shape().feature, actions = shape().actions, in = inputs();
   factor_.resize(n);
   T* x = x_.grow(size_t(n) * in);
@@ -55,7 +56,7 @@ Losses Mlp<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const Lo
   T* dlogits = dlogits_.grow(size_t(n) * actions);
   T* drewards = drewards_.grow(size_t(n) * actions);
   Losses losses;
-  losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
+  losses.policy = this->score_loss(step, dlogits);
   losses.reward = reward_loss(n, actions, rewards, batch.taken, batch.reward, weights.reward, drewards);
   policy_.backward(parallel, x, dlogits, dx, false, parameters, gradient);
   reward_.backward(parallel, x, drewards, dx, true, parameters, gradient);

@@ -17,8 +17,7 @@ class Mlp : public EncodedPolicy<T> {
 
  protected:
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
-  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                   const T* psi, T* logits, T* dpsi, T* gradient) override;
+  Losses head_step(const HeadStep<T>& step) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
   void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 

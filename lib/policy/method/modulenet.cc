@@ -56,8 +56,8 @@ void ModuleNet<T>::Modules::backward(Parallel& parallel, const T* dto, T* dfrom,
 }
 
 template <class T>
-Losses ModuleNet<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
-                               const T* parameters, const T* psi, T* logits, T* dpsi, T* gradient) {
+Losses ModuleNet<T>::head_step(const HeadStep<T>& step) {
+  const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
   const int n = batch.size;
   const size_t seams = size_t(n) * shape().seam;
   T* seam = seam_.grow(seams);
@@ -70,13 +70,13 @@ Losses ModuleNet<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, co
   task_.forward(parallel, psi, parameters, seam);
   Random random(batch.seed, Purpose::kDropout, 0, batch.update);
   for (size_t i = 0; i < seams; ++i) {
-    keep[i] = weights.dropout > 0 && random.uniform() < weights.dropout ? T(0) : T(1 / (1 - weights.dropout));
+    keep[i] = options.dropout > 0 && random.uniform() < options.dropout ? T(0) : T(1 / (1 - options.dropout));
     seam[i] *= keep[i];
   }
   env_.forward(parallel, seam, parameters, logits);
   Losses losses;
   losses.reward = losses.env = losses.task = std::nan("");
-  losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
+  losses.policy = this->score_loss(step, dlogits);
   std::fill_n(dseam, seams, T(0));
   env_.backward(parallel, dlogits, dseam, parameters, gradient);
   for (size_t i = 0; i < seams; ++i) dseam[i] *= keep[i];

@@ -77,8 +77,8 @@ double Sf<T>::planner_distance(const StepBatch<T>& batch, const T* q, T* dq) con
 }
 
 template <class T>
-Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                        const T* feature, T* logits, T* dfeature, T* gradient) {
+Losses Sf<T>::head_step(const HeadStep<T>& step) {
+  const auto& [parallel, batch, options, parameters, feature, logits, dfeature, gradient] = step;
   const int n = batch.size, d = shape().feature, width = shape().embedding, actions = shape().actions, in = inputs();
   const size_t row = size_t(actions) * width;
   T* x = x_.grow(size_t(n) * in);
@@ -96,11 +96,10 @@ Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const Los
   Losses losses;
   losses.env = losses.task = std::nan("");
   if (shape().sf_loss == SfLoss::kTemporalDifference && !batch.objective) {
-    losses.policy = temporal_difference(batch, weights.discount, phi, psi, dpsi);
+    losses.policy = temporal_difference(batch, options.discount, phi, psi, dpsi);
   } else {
-    losses.policy = shape().sf_loss == SfLoss::kPlannerQ && !batch.objective
-                        ? planner_distance(batch, logits, dq)
-                        : this->score_loss(parallel, batch, feature, logits, dq, dfeature);
+    losses.policy = shape().sf_loss == SfLoss::kPlannerQ && !batch.objective ? planner_distance(batch, logits, dq)
+                                                                             : this->score_loss(step, dq);
     for (int i = 0; i < n; ++i) {
       const T* w = task_.row(batch.task[i]);
       T* dw = task_.gradient_row(batch.task[i]);
@@ -119,7 +118,7 @@ Losses Sf<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const Los
     T* dw = task_.gradient_row(batch.task[i]);
     const T error = kernels<T>().dot(width, phi + at, w) - batch.reward[i];
     losses.reward += double(error) * error / n;
-    const T derror = T(weights.reward) * 2 * error / T(n);
+    const T derror = T(options.weights.reward) * 2 * error / T(n);
     for (int c = 0; c < width; ++c) {
       dphi[at + c] = derror * w[c];
       dw[c] += derror * phi[at + c];

@@ -77,8 +77,8 @@ void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* grad
 
 // Policy and reward losses: logits, dpsi_ and dcomposed_.
 template <class T>
-Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                       const T* psi, T* logits, T* dpsi, T* gradient) {
+Losses SynPo<T>::heads(const HeadStep<T>& step) {
+  const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
   const int n = batch.size, d = shape().feature, actions = shape().actions, columns = form_.columns(),
             pairs = int(pairs_.size());
   const size_t matrix = form_.matrix_size();
@@ -109,7 +109,7 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
   });
   T* dlogits = dlogits_.grow(size_t(n) * actions);
   Losses losses;
-  losses.policy = this->score_loss(parallel, batch, psi, logits, dlogits, dpsi);
+  losses.policy = this->score_loss(step, dlogits);
   for_rows([&](int rows, size_t q_at, size_t at) {
     form_.scores_backward(rows, dlogits + at, parameters, dq_[kPolicy].data() + q_at);
   });
@@ -120,7 +120,7 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
     const T* q = q_[kReward].data() + size_t(i) * columns;
     const T error = form_.score(q, a, parameters) + parameters[bias_[kReward] + a] - batch.reward[i];
     losses.reward += double(error) * error / n;
-    const T derror = T(weights.reward) * 2 * error / T(n);
+    const T derror = T(options.weights.reward) * 2 * error / T(n);
     gradient[bias_[kReward] + a] += derror;
     form_.score_backward(q, a, derror, parameters, dq_[kReward].data() + size_t(i) * columns, gradient);
   }
@@ -138,8 +138,9 @@ Losses SynPo<T>::heads(Parallel& parallel, const StepBatch<T>& batch, const Loss
 
 // The disentanglement losses. Samples are taken in the order of their labels, so that x is one product an action.
 template <class T>
-void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
-                           const T* parameters, const T* psi, T* dpsi, T* gradient, Losses& losses) {
+void SynPo<T>::disentangle(const HeadStep<T>& step, Losses& losses) {
+  const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
+  const LossWeights& weights = options.weights;
   const int n = batch.size, d = shape().feature, basis = shape().basis;
   const std::vector<int>& order = by_label_.members;
   T* sorted = psi_sorted_.grow(size_t(n) * d);
@@ -186,8 +187,8 @@ void SynPo<T>::disentangle(Parallel& parallel, const StepBatch<T>& batch, const 
 }
 
 template <class T>
-Losses SynPo<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights,
-                           const T* parameters, const T* psi, T* logits, T* dpsi, T* gradient) {
+Losses SynPo<T>::head_step(const HeadStep<T>& step) {
+  const StepBatch<T>& batch = step.batch;
   const int tasks = shape().tasks;
   by_pair_.sort(batch.size, (env_ ? shape().envs : 1) * tasks,
                 [&](int i) { return (env_ ? batch.env[i] * tasks : 0) + batch.task[i]; });
@@ -195,13 +196,13 @@ Losses SynPo<T>::head_step(Parallel& parallel, const StepBatch<T>& batch, const 
   pairs_.clear();
   for (const int key : by_pair_.keys) pairs_.emplace_back(key / tasks, key % tasks);
 
-  use_embeddings(parameters);
-  compose(parallel, parameters, pairs_);
-  Losses losses = heads(parallel, batch, weights, parameters, psi, logits, dpsi, gradient);
-  compose_backward(parallel, parameters, gradient);
-  disentangle(parallel, batch, weights, parameters, psi, dpsi, gradient, losses);
-  if (env_) env_->backward(parameters, gradient);
-  task_.backward(parameters, gradient);
+  use_embeddings(step.parameters);
+  compose(step.parallel, step.parameters, pairs_);
+  Losses losses = heads(step);
+  compose_backward(step.parallel, step.parameters, step.gradient);
+  disentangle(step, losses);
+  if (env_) env_->backward(step.parameters, step.gradient);
+  task_.backward(step.parameters, step.gradient);
   return losses;
 }
 

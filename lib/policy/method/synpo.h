@@ -28,8 +28,7 @@ class SynPo : public EncodedPolicy<T> {
 
  protected:
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
-  Losses head_step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                   const T* psi, T* logits, T* dpsi, T* gradient) override;
+  Losses head_step(const HeadStep<T>& step) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
   void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
@@ -40,10 +39,8 @@ class SynPo : public EncodedPolicy<T> {
   void use_embeddings(const T* parameters);
   void compose(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs);
   void compose_backward(Parallel& parallel, const T* parameters, T* gradient);
-  Losses heads(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-               const T* psi, T* logits, T* dpsi, T* gradient);
-  void disentangle(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights, const T* parameters,
-                   const T* psi, T* dpsi, T* gradient, Losses& losses);
+  Losses heads(const HeadStep<T>& step);
+  void disentangle(const HeadStep<T>& step, Losses& losses);
 
   std::optional<EmbeddingTable<T>> env_;
   EmbeddingTable<T> task_;

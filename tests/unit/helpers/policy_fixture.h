@@ -51,8 +51,17 @@ struct RandomSteps {
     for (int i = 0; i < size; ++i) next.push_back(int(random.below(uint32_t(size + 2))) - 2);
   }
   StepBatch<T> batch(uint64_t update = 0) const {
-    return {int(env.size()), observations.data(), env.data(), task.data(), label.data(),    taken.data(),
-            reward.data(),   /*seed=*/1,          update,     next.data(), planner_q.data()};
+    return {.size = int(env.size()),
+            .observations = observations.data(),
+            .env = env.data(),
+            .task = task.data(),
+            .label = label.data(),
+            .taken = taken.data(),
+            .reward = reward.data(),
+            .seed = 1,
+            .update = update,
+            .next = next.data(),
+            .planner_q = planner_q.data()};
   }
   std::vector<uint8_t> observations;
   std::vector<int> env, task, label, taken, next;
@@ -65,9 +74,9 @@ struct Network {
   explicit Network(const PolicyShape& shape, const std::string& method = "synpo")
       : policy(make_policy<T>(method, shape)), actions(shape.actions), parameters(policy->parameters().total(), T(0)),
         statistics(policy->statistics().total(), T(0)), gradient(parameters.size(), T(0)) {}
-  Losses step(Parallel& parallel, const StepBatch<T>& batch, const LossWeights& weights) {
+  Losses step(Parallel& parallel, const StepBatch<T>& batch, const StepOptions& options) {
     logits.assign(size_t(batch.size) * actions, T(0));
-    return policy->step(parallel, batch, weights, parameters.data(), statistics.data(), gradient.data(), logits.data());
+    return policy->step(parallel, batch, options, parameters.data(), statistics.data(), gradient.data(), logits.data());
   }
   // Each state's scores, of the pairs as they stand in the batch.
   std::vector<T> infer(Parallel& parallel, const StepBatch<T>& batch, int at_once) {
@@ -140,13 +149,13 @@ inline PolicyShape tiny_shape_for(const World& world) {
 // Holds the gradient, of the tensors for which `chosen(name)`, to finite differences of what `value(losses)` makes of a
 // step's losses.
 template <class Value, class Chosen>
-void expect_finite_differences(Network<double>& net, const StepBatch<double>& batch, const LossWeights& weights,
+void expect_finite_differences(Network<double>& net, const StepBatch<double>& batch, const StepOptions& options,
                                Value value, Chosen chosen) {
   Parallel parallel(1);
   const std::vector<double> statistics = net.statistics;
   const auto loss = [&] {
     net.statistics = statistics;
-    return value(net.step(parallel, batch, weights));
+    return value(net.step(parallel, batch, options));
   };
   const double here = loss();
   const std::vector<double> gradient = net.gradient;

@@ -23,7 +23,7 @@ class FunctionPolicy : public Policy<float> {
   explicit FunctionPolicy(Scores function) : function_(function) {}
   size_t observation_size() const override { return size_t(kGridCells) * kHistory; }
   void initialise(const InitOptions&, float*, float*) const override {}
-  Losses step(Parallel&, const StepBatch<float>&, const LossWeights&, const float*, float*, float*, float*) override {
+  Losses step(Parallel&, const StepBatch<float>&, const StepOptions&, const float*, float*, float*, float*) override {
     throw std::logic_error("evaluation does not learn");
   }
   void prepare_inference(Parallel&, const float*, const float*, const std::vector<std::pair<int, int>>&) override {}

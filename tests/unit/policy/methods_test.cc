@@ -90,7 +90,7 @@ TEST_P(Methods, EveryLossCountsByItsWeight) {
   Losses losses;
   const auto gradient = [&](const LossWeights& weights) {
     net.statistics = statistics;
-    losses = net.step(parallel, steps.batch(), weights);
+    losses = net.step(parallel, steps.batch(), {weights});
     double total = losses.policy;
     for (const double part : {weights.reward * losses.reward, weights.env * losses.env, weights.task * losses.task})
       if (!std::isnan(part)) total += part;
@@ -118,8 +118,8 @@ TEST_P(Methods, OneAndTwoThreadsGiveTheSameBits) {
     const RandomSteps<float> steps(full ? 45 : 141, GetParam().shape(full), 4);
     Network<float> one = network<float>(full), two = network<float>(full);
     Parallel alone(1), together(2);
-    one.step(alone, steps.batch(), {0.01, 0.1, 1, kDropout});
-    two.step(together, steps.batch(), {0.01, 0.1, 1, kDropout});
+    one.step(alone, steps.batch(), {{0.01, 0.1, 1}, kDropout});
+    two.step(together, steps.batch(), {{0.01, 0.1, 1}, kDropout});
     EXPECT_EQ(one.gradient, two.gradient);
     EXPECT_EQ(one.logits, two.logits);
     EXPECT_EQ(one.statistics, two.statistics);
@@ -132,11 +132,11 @@ TEST_P(Methods, ABatchBehindAnotherIsAsIfItWereAlone) {
   Parallel parallel(2);
   Network<float> fresh = network<float>(), used = network<float>();
   const std::vector<float> statistics = used.statistics;
-  used.step(parallel, large.batch(), {0.01, 0.1, 1, kDropout});
+  used.step(parallel, large.batch(), {{0.01, 0.1, 1}, kDropout});
   used.statistics = statistics;
   used.infer(parallel, large.batch(), 32);
-  const Losses behind = used.step(parallel, small.batch(), {0.01, 0.1, 1, kDropout});
-  const Losses alone = fresh.step(parallel, small.batch(), {0.01, 0.1, 1, kDropout});
+  const Losses behind = used.step(parallel, small.batch(), {{0.01, 0.1, 1}, kDropout});
+  const Losses alone = fresh.step(parallel, small.batch(), {{0.01, 0.1, 1}, kDropout});
   EXPECT_EQ(behind.total, alone.total);
   EXPECT_EQ(used.logits, fresh.logits);
   EXPECT_EQ(used.gradient, fresh.gradient);
@@ -149,7 +149,7 @@ TEST_P(Methods, InferenceDoesNotDependOnNeighboursOrThreads) {
     const RandomSteps<float> steps(39, GetParam().shape(full), 6);
     Network<float> net = network<float>(full);
     Parallel one(1), two(2);
-    net.step(one, steps.batch(), {0.01, 0.1, 1});
+    net.step(one, steps.batch(), {{0.01, 0.1, 1}});
     const std::vector<float> together = net.infer(one, steps.batch(), 32);
     EXPECT_EQ(net.infer(two, steps.batch(), 32), together);
     for (const int at_once : {1, 3, 17})
@@ -163,7 +163,7 @@ TEST_P(Methods, InferenceWithTheBatchsOwnStatisticsIsTraining) {
   Network<double> net = network<double>();
   net.shake();
   Parallel parallel(1);
-  for (int i = 0; i < 100; ++i) net.step(parallel, steps.batch(), {0.01, 0.1, 1});
+  for (int i = 0; i < 100; ++i) net.step(parallel, steps.batch(), {{0.01, 0.1, 1}});
   EXPECT_LT(relative_error(net.infer(parallel, steps.batch(), 32), net.logits), 0.03);
 }
 
@@ -200,8 +200,8 @@ TEST_P(OneHot, GeneralFormIsTheDirectForm) {
   for (int a = 0; a < shape.actions; ++a) general.parameter("phi")[a * shape.actions + a] = 1;
   const RandomSteps<double> steps(70, shape, 4);
   Parallel parallel(2);
-  const Losses want = direct.step(parallel, steps.batch(), {0.3, 0.5, 0.7}),
-               got = general.step(parallel, steps.batch(), {0.3, 0.5, 0.7});
+  const Losses want = direct.step(parallel, steps.batch(), {{0.3, 0.5, 0.7}}),
+               got = general.step(parallel, steps.batch(), {{0.3, 0.5, 0.7}});
   EXPECT_NEAR(got.total, want.total, 1e-12);
   EXPECT_NEAR(got.reward, want.reward, 1e-12);
   EXPECT_NEAR(got.task, want.task, 1e-12);
@@ -234,7 +234,7 @@ struct OpenSeam {
     Parallel parallel(2);
     StepBatch<double> batch = steps.batch(update);
     batch.seed = seed;
-    net.step(parallel, batch, {0, 0, 0, dropout});
+    net.step(parallel, batch, {{0, 0, 0}, dropout});
     return net.logits;
   }
   const PolicyShape shape = tiny_shape(false);
@@ -294,10 +294,10 @@ struct TemporalDifference {
     net.initialise();
     net.shake();
   }
-  std::vector<double> gradient(const LossWeights& weights) {
+  std::vector<double> gradient(const StepOptions& options) {
     const std::vector<double> statistics = net.statistics;
     Parallel parallel(1);
-    losses = net.step(parallel, steps.batch(), weights);
+    losses = net.step(parallel, steps.batch(), options);
     net.statistics = statistics;
     return net.gradient;
   }
@@ -307,7 +307,7 @@ struct TemporalDifference {
   Losses losses;
 };
 
-LossWeights discounted(double discount, double reward = 0.3) { return {reward, 0, 0, 0, discount}; }
+StepOptions discounted(double discount, double reward = 0.3) { return {{reward, 0, 0}, 0, discount}; }
 
 TEST(SfTemporalDifference, IsTheLossByHand) {
   TemporalDifference sf;

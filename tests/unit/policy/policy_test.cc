@@ -22,7 +22,7 @@ TEST(SynPo, StatisticsOfTheInputAreThePixels) {
   Network<double> net(shape);
   Parallel parallel(2);
   net.initialise();
-  net.step(parallel, steps.batch(), {0.01, 0.1, 1});
+  net.step(parallel, steps.batch(), {{0.01, 0.1, 1}});
   const size_t mean_at = net.policy->statistics().find("encoder.input.mean")->offset,
                variance_at = net.policy->statistics().find("encoder.input.variance")->offset;
   for (int channel = 0; channel < kViewChannels; ++channel) {
@@ -47,7 +47,7 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
   const RandomSteps<double> steps(20, shape, 6);
   Parallel parallel(1);
   plain.initialise();
-  plain.step(parallel, steps.batch(), {0, 0, 0});
+  plain.step(parallel, steps.batch(), {{0, 0, 0}});
   std::vector<double> mean = random_values<double>(kViewChannels, 1),
                       deviation = random_values<double>(kViewChannels, 2);
   const auto statistic = [](Network<double>& net, const std::string& name) {

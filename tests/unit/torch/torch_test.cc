@@ -109,8 +109,13 @@ Worst compare_with_dump(const std::string& path) {
   const std::vector<int> env = whole_numbers(dump, "env"), task = whole_numbers(dump, "task"),
                          label = whole_numbers(dump, "label"), taken = whole_numbers(dump, "taken");
   const std::vector<float> reward = dump.get<float>("reward");
-  StepBatch<float> batch = {int(env.size()), observations.data(), env.data(),   task.data(),
-                            label.data(),    taken.data(),        reward.data()};
+  StepBatch<float> batch = {.size = int(env.size()),
+                            .observations = observations.data(),
+                            .env = env.data(),
+                            .task = task.data(),
+                            .label = label.data(),
+                            .taken = taken.data(),
+                            .reward = reward.data()};
   std::vector<int> next;
   std::vector<float> planner_q;
   if (dump.meta("method") == "sf") {
