@@ -140,8 +140,8 @@ int body(int argc, char** argv) {
   if (resumes) {
     run = std::make_unique<Imitation>(world, parallel, from);
   } else {
-    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.sight()), seen,
-                                      uint64_t(s.seed));
+    run = std::make_unique<Imitation>(world, parallel, s.method, hyper.result(s.method, world.observation_spec().sight),
+                                      seen, uint64_t(s.seed));
     if (!s.init.empty()) {
       Checkpoint init = load_checkpoint(s.init);
       init.seen.clear();  // of its own world

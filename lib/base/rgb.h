@@ -6,6 +6,7 @@ namespace synpo {
 
 struct Rgb {
   uint8_t r, g, b;
+  bool operator==(const Rgb&) const = default;
 };
 
 }  // namespace synpo

@@ -177,7 +177,7 @@ RunningOptions O::running_options(int64_t update, int64_t total) const {
 
 PolicyShape O::shape(const World& world) const {
   PolicyShape shape;
-  shape.sight = world.sight();
+  shape.observation = world.observation_spec();
   shape.envs = world.envs();
   shape.tasks = world.task_count();
   shape.actions = world.actions();

@@ -36,9 +36,7 @@ struct ViewSizeName {
   const char* name;
   int TemporalSizes::*member;
 };
-constexpr ViewSizeName kViewSizes[] = {{"view", &TemporalSizes::view},
-                                       {"view_channels", &TemporalSizes::channels},
-                                       {"objects", &TemporalSizes::objects},
+constexpr ViewSizeName kViewSizes[] = {{"view_channels", &TemporalSizes::channels},
                                        {"object_embedding", &TemporalSizes::object_embedding},
                                        {"view_hidden", &TemporalSizes::hidden}};
 struct SwitchName {
@@ -72,10 +70,13 @@ std::map<std::string, int64_t> describe_shape(const PolicyShape& shape) {
   for (const SizeName& size : kSizes) sizes[size.name] = shape.*size.member;
   sizes["sf_loss"] = int64_t(shape.sf_loss);
   for (const SwitchName& flag : kSwitches) sizes[flag.name] = shape.*flag.member;
-  if (shape.sight == Sight::kFeatures)
+  if (shape.observation.sight == Sight::kFeatures) {
+    sizes["view"] = shape.observation.view;
+    sizes["objects"] = shape.observation.objects;
     for (const ViewSizeName& size : kViewSizes) sizes[size.name] = shape.views.*size.member;
-  else
+  } else {
     for (size_t i = 0; i < shape.channels.size(); ++i) sizes["channels" + std::to_string(i + 1)] = shape.channels[i];
+  }
   return sizes;
 }
 
@@ -94,7 +95,9 @@ PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes) {
   if (sizes.count("sf_loss")) shape.sf_loss = SfLoss(get("sf_loss", 0, 2));
   for (const SwitchName& flag : kSwitches) shape.*flag.member = get(flag.name, 0, 1) != 0;
   if (sizes.count("view")) {
-    shape.sight = Sight::kFeatures;
+    shape.observation.sight = Sight::kFeatures;
+    shape.observation.view = get("view", 1, kSizeLimit);
+    shape.observation.objects = get("objects", 1, kSizeLimit);
     for (const ViewSizeName& size : kViewSizes) shape.views.*size.member = get(size.name, 1, kSizeLimit);
   } else {
     for (size_t i = 0; i < shape.channels.size(); ++i)
@@ -178,9 +181,12 @@ Model load_model(const Checkpoint& checkpoint, const World& world) {
   Model model;
   model.method = checkpoint.method;
   model.shape = parse_shape(checkpoint.shape);
+  const ObservationSpec &said = model.shape.observation, &spec = world.observation_spec();
   if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() ||
-      model.shape.actions != world.actions() || model.shape.sight != world.sight())
+      model.shape.actions != world.actions() || said.sight != spec.sight || said.view != spec.view ||
+      said.objects != spec.objects)
     fail(Exit::kData, "the network's shape does not fit the world");
+  model.shape.observation = spec;
   if (!checkpoint.extractor.empty() && checkpoint.extractor != world.extractor())
     fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ",
          quoted(world.extractor()));

@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "nn/layout.h"
 #include "policy/temporal_sizes.h"
+#include "world/observation.h"
 
 namespace synpo {
 
@@ -19,8 +20,8 @@ enum class SfLoss { kTemporalDifference, kPlannerQ, kCrossEntropy };
 
 // Sizes of a policy (supplement, Section 4.1). The defaults are the paper's for GridWorld.
 struct PolicyShape {
-  Sight sight = Sight::kPictures;
-  TemporalSizes views;                             // where sight is of features
+  ObservationSpec observation;                     // of the world
+  TemporalSizes views;                             // where observations are features
   std::vector<int> channels = {32, 64, 128, 256};  // of the four stages of Table 2
   int envs = 20, tasks = 20, actions = 5;
   int feature = 128;         // d, of psi(s)

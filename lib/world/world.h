@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/random.h"
+#include "world/observation.h"
 
 namespace synpo {
 
@@ -34,8 +35,6 @@ struct WorldStep {
 
 constexpr int kStepLimit = 300;  // of an episode, in every world: then it is cut
 
-constexpr int kHistory = 4;  // states whose observations the network is given
-
 // The last states of a running episode, newest last. Before the first step the earlier ones are missing.
 struct StateHistory {
   std::array<WorldState, kHistory> states;
@@ -52,14 +51,6 @@ enum class StepKind : uint8_t {
   kStart    // the first step of an episode
 };
 constexpr int kStepKinds = 4;
-
-// What an observation is made of, which decides the encoder.
-enum class Sight : uint8_t {
-  kPictures,  // uint8 [16, 16, history] of colour indices, oldest first (view.h)
-  kFeatures  // float [history, kViewFeatures] of views, oldest first, and kHandFloats more: the number of the object in
-             // the hand, then zeros
-};
-constexpr int kViewFeatures = 2048, kHandFloats = 16;
 
 struct Environment {
   std::string name;
@@ -91,12 +82,12 @@ class World {
   // Whether something could be taken or put here, rightly or wrongly.
   virtual bool at_choice(EnvTask pair, const WorldState& state) const = 0;
 
-  virtual Sight sight() const = 0;
+  virtual const ObservationSpec& observation_spec() const = 0;
   // What made the features, "name@hash": a policy goes with features of one extractor alone. Empty where observations
   // are pictures.
   virtual std::string extractor() const { return ""; }
-  virtual size_t observation_size() const = 0;  // bytes
-  // `window` is the radius of what is seen, where the world has one.
+  // Writes observation_spec().bytes(). `window` is how far the agent sees, in the world's own measure, as trajectories
+  // and checkpoints carry it; a world in which that never changes passes over it.
   virtual void observe(int env, const StateHistory& history, int window, uint8_t* observation) const = 0;
 
   virtual StartPlaces start_places(int env, const WorldState& start) const = 0;
@@ -105,6 +96,7 @@ class World {
   // Whether this can be a state of a running episode: what comes from a file may be none.
   virtual bool valid(EnvTask pair, const WorldState& state) const = 0;
 
+  size_t observation_size() const { return observation_spec().bytes(); }
   int envs() const { return int(environments().size()); }
   int task_count() const { return int(task_names().size()); }
   int actions() const { return int(action_names().size()); }

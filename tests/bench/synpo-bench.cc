@@ -60,10 +60,10 @@ struct RandomBatch {
       reward[i] = -0.01f;
       if (i < n / 2) next[i] = n / 2 + i;
       uint8_t* observation = observations.data() + i * observation_size;
-      if (shape.sight == Sight::kPictures)
+      if (shape.observation.sight == Sight::kPictures)
         draw_start(env[i], random, observation);
       else
-        draw_features(shape.views, random, observation);
+        draw_features(shape.observation, random, observation);
     }
     batch = {.size = n,
              .observations = observations.data(),
@@ -86,11 +86,11 @@ struct RandomBatch {
     for (int cell = 0; cell < kGridCells; ++cell)
       for (int f = 0; f < kHistory; ++f) picture[cell * kHistory + f] = colours[cell];
   }
-  static void draw_features(const TemporalSizes& sizes, Random& random, uint8_t* observation) {
-    std::vector<float> floats(size_t(kHistory) * sizes.view + kHandFloats, 0.0f);
-    const size_t hand = floats.size() - kHandFloats;
+  static void draw_features(const ObservationSpec& spec, Random& random, uint8_t* observation) {
+    std::vector<float> floats(spec.bytes() / sizeof(float), 0.0f);
+    const size_t hand = floats.size() - ObservationSpec::kObjectFloats;
     for (size_t j = 0; j < hand; ++j) floats[j] = float(random.uniform());
-    floats[hand] = float(random.below(uint32_t(sizes.objects)));
+    floats[hand] = float(random.below(uint32_t(spec.objects)));
     std::memcpy(observation, floats.data(), floats.size() * sizeof(float));
   }
 };
@@ -116,7 +116,7 @@ double network_rate(bool train, int n, int threads, double limit_s = 4, const st
                     const char* world = "gridworld") {
   Parallel parallel(threads);
   const std::unique_ptr<World> opened = open_world(world);
-  const ImitationOptions options = recipe(kDefaultRecipe, method, opened->sight());
+  const ImitationOptions options = recipe(kDefaultRecipe, method, opened->observation_spec().sight);
   const PolicyShape shape = options.shape(*opened);
   const std::unique_ptr<Policy<float>> made = make_policy(method, shape);
   Policy<float>& policy = *made;
@@ -256,7 +256,8 @@ double draw_rate(int threads) {
 // Multiply-adds that one state's training step executes in matrix products: forward, and twice that backward but for
 // the input's gradient.
 double step_multiply_adds() {
-  const PolicyShape shape;
+  PolicyShape shape;
+  shape.observation = grid_observation_spec();
   const SynPo<float> policy(shape);
   const double recognisers = 2.0 * (shape.basis * shape.hidden + shape.hidden * shape.embedding) +
                              shape.embedding * (shape.envs + shape.tasks);

@@ -143,7 +143,7 @@ int ppo(int argc, char** argv) {
   const bool needs_world = options.given("world") && (!random || lies_in_files(from));
   const std::unique_ptr<World> opened = fresh ? open_world(s.world) : world_of(from, needs_world ? s.world : "");
   const World& world = *opened;
-  const ImitationOptions network = recipe(kDefaultRecipe, s.method, world.sight());
+  const ImitationOptions network = recipe(kDefaultRecipe, s.method, world.observation_spec().sight);
   Model model = fresh ? fresh_model(s.method, network.shape(world), {uint64_t(s.seed), network.embedding_sd})
                       : load_model(from, world);
   if (!s.pairs.empty()) {

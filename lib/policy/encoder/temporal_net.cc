@@ -18,13 +18,14 @@ constexpr int kBlock = 256;  // rows of a weight's gradient that are computed to
 }  // namespace
 
 template <class T>
-TemporalNet<T>::TemporalNet(const TemporalSizes& sizes, int feature, Layout& parameters)
-    : sizes_(sizes),
-      feature_(feature), first_{sizes.view, parameters.add("encoder.conv1.weight", {kTaps, sizes.view, sizes.channels}),
+TemporalNet<T>::TemporalNet(const ObservationSpec& observation, const TemporalSizes& sizes, int feature,
+                            Layout& parameters)
+    : view_(observation.view), object_count_(observation.objects), sizes_(sizes),
+      feature_(feature), first_{view_, parameters.add("encoder.conv1.weight", {kTaps, view_, sizes.channels}),
                                 parameters.add("encoder.conv1.bias", {sizes.channels})},
       second_{sizes.channels, parameters.add("encoder.conv2.weight", {kTaps, sizes.channels, sizes.channels}),
               parameters.add("encoder.conv2.bias", {sizes.channels})},
-      objects_(parameters.add("encoder.object", {sizes.objects, sizes.object_embedding})),
+      objects_(parameters.add("encoder.object", {object_count_, sizes.object_embedding})),
       fc_("encoder.fc", joined_width(), sizes.hidden, feature, parameters), end_(parameters.total()) {}
 
 template <class T>
@@ -35,7 +36,7 @@ void TemporalNet<T>::initialise(uint64_t seed, T* parameters, T*) const {
     stream.uniform(parameters + c->weight, size_t(kTaps) * c->in * sizes_.channels, bound);
     stream.uniform(parameters + c->bias, size_t(sizes_.channels), bound);
   }
-  stream.normal(parameters + objects_, size_t(sizes_.objects) * sizes_.object_embedding, 1);
+  stream.normal(parameters + objects_, size_t(object_count_) * sizes_.object_embedding, 1);
   fc_.initialise(stream, parameters);
 }
 
@@ -60,8 +61,7 @@ const T* TemporalNet<T>::values(int n, const uint8_t* observations, Buffer<T>& o
 template <class T>
 void TemporalNet<T>::pack_first(Parallel& parallel, const T* parameters, Packed<T>* taps) const {
   for (int tap = 0; tap < kTaps; ++tap)
-    taps[tap].pack(parallel, Op::kAsIs, sizes_.view, sizes_.channels, parameters + tap_offset(first_, tap),
-                   sizes_.channels);
+    taps[tap].pack(parallel, Op::kAsIs, view_, sizes_.channels, parameters + tap_offset(first_, tap), sizes_.channels);
 }
 
 template <class T>
@@ -71,17 +71,16 @@ void TemporalNet<T>::convolve(int n, const T* x, const Packed<T>* taps, const T*
   for (int t = 0; t < 2; ++t) {
     const int first = t == 0 ? 1 : 0;
     for (int tap = first; tap < kTaps; ++tap)
-      gemm(Op::kAsIs, n, x + size_t(2 * t - 1 + tap) * sizes_.view, int(row()), taps[tap], y1 + t * c, 2 * c,
-           tap > first);
+      gemm(Op::kAsIs, n, x + size_t(2 * t - 1 + tap) * view_, int(row()), taps[tap], y1 + t * c, 2 * c, tap > first);
   }
   kernels<T>().add_bias(2 * n, c, bias, true, y1);
 }
 
 template <class T>
 void TemporalNet<T>::put_objects(int n, const T* x, const T* objects, T* joined) const {
-  const size_t hand = size_t(kHistory) * sizes_.view, width = size_t(sizes_.object_embedding);
+  const size_t width = size_t(sizes_.object_embedding);
   for (int i = 0; i < n; ++i)
-    std::copy_n(objects + size_t(x[i * row() + hand]) * width, width,
+    std::copy_n(objects + size_t(x[i * row() + views()]) * width, width,
                 joined + size_t(i) * joined_width() + sizes_.channels);
 }
 
@@ -107,13 +106,13 @@ void TemporalNet<T>::forward(Parallel& parallel, int n, const uint8_t* observati
 
 template <class T>
 void TemporalNet<T>::backward(Parallel& parallel, const T* parameters, T* dpsi, T* gradient) {
-  const int n = n_, v = sizes_.view, c = sizes_.channels, width = joined_width(), embedding = sizes_.object_embedding;
+  const int n = n_, v = view_, c = sizes_.channels, width = joined_width(), embedding = sizes_.object_embedding;
   T *djoined = djoined_.grow(size_t(n) * width), *dy1 = dy1_.grow(size_t(n) * 2 * c), *dy2 = dy2_.grow(size_t(n) * c);
   std::fill(gradient + first_.bias, gradient + end_, T(0));  // the first convolution's weight is in front of it
   fc_.backward(parallel, joined_.data(), dpsi, djoined, false, parameters, gradient);
   for (size_t i = 0; i < size_t(n); ++i) {
     std::copy_n(djoined + i * width, c, dy2 + i * c);
-    T* object = gradient + objects_ + size_t(x_[i * row() + size_t(kHistory) * v]) * embedding;
+    T* object = gradient + objects_ + size_t(x_[i * row() + views()]) * embedding;
     for (int j = 0; j < embedding; ++j) object[j] += djoined[i * width + c + j];
   }
   dense_backward(parallel, n, 2 * c, c, y1_.data(), parameters + tap_offset(second_, 1), y2_.data(), dy2, dy1, false,
@@ -150,8 +149,7 @@ void TemporalNet<T>::prepare_inference(Parallel& parallel, const T* parameters, 
   fc_.prepare_inference(parameters);
   bias_values_.assign(parameters + first_.bias, parameters + first_.bias + c);
   bias_values_.insert(bias_values_.end(), parameters + second_.bias, parameters + second_.bias + c);
-  object_values_.assign(parameters + objects_,
-                        parameters + objects_ + size_t(sizes_.objects) * sizes_.object_embedding);
+  object_values_.assign(parameters + objects_, parameters + objects_ + size_t(object_count_) * sizes_.object_embedding);
   scratch_.resize(std::max<size_t>(scratch_.size(), parallel.threads()));
 }
 
@@ -172,7 +170,7 @@ void TemporalNet<T>::infer(int thread, int n, const uint8_t* observations, T* ps
 template <class T>
 size_t TemporalNet<T>::multiply_adds() const {
   const size_t c = size_t(sizes_.channels);
-  return c * (5 * size_t(sizes_.view) + 2 * c) + size_t(sizes_.hidden) * (joined_width() + feature_);
+  return c * (5 * size_t(view_) + 2 * c) + size_t(sizes_.hidden) * (joined_width() + feature_);
 }
 
 template class TemporalNet<float>;

@@ -12,6 +12,7 @@
 #include "nn/layout.h"
 #include "policy/encoder/encoder.h"
 #include "policy/temporal_sizes.h"
+#include "world/observation.h"
 
 namespace synpo {
 
@@ -19,11 +20,9 @@ template <class T>
 class TemporalNet : public Encoder<T> {
  public:
   // Appends its tensors to the layout, under `encoder.`.
-  TemporalNet(const TemporalSizes& sizes, int feature, Layout& parameters);
+  TemporalNet(const ObservationSpec& observation, const TemporalSizes& sizes, int feature, Layout& parameters);
 
-  // float [history, view], oldest first, and kHandFloats more, the first of which is the number of the object in the
-  // hand.
-  size_t observation_size() const override { return (size_t(kHistory) * sizes_.view + kHandFloats) * sizeof(float); }
+  size_t observation_size() const override { return row() * sizeof(float); }
 
   // Convolutions as PyTorch does by default, dense layers Xavier uniform, the objects' embeddings N(0, 1).
   void initialise(uint64_t seed, T* parameters, T* statistics) const override;
@@ -45,7 +44,8 @@ class TemporalNet : public Encoder<T> {
     size_t weight, bias;
   };
   size_t tap_offset(const Convolution& c, int tap) const { return c.weight + size_t(tap) * c.in * sizes_.channels; }
-  size_t row() const { return size_t(kHistory) * sizes_.view + kHandFloats; }  // values of an observation
+  size_t views() const { return size_t(kHistory) * view_; }                // values of an observation's views
+  size_t row() const { return views() + ObservationSpec::kObjectFloats; }  // values of an observation
   int joined_width() const { return sizes_.channels + sizes_.object_embedding; }
   // The values [n, row()] of observations: where they stand, or copied to `own`.
   const T* values(int n, const uint8_t* observations, Buffer<T>& own) const;
@@ -55,6 +55,7 @@ class TemporalNet : public Encoder<T> {
   // What follows the second one's outputs, where those of x hold on to, in joined [n, joined_width()].
   void put_objects(int n, const T* x, const T* objects, T* joined) const;
 
+  int view_, object_count_;  // of ObservationSpec
   TemporalSizes sizes_;
   int feature_;
   Convolution first_, second_;

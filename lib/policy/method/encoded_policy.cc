@@ -11,7 +11,8 @@ namespace {
 
 template <class T>
 std::unique_ptr<Encoder<T>> make_encoder(const PolicyShape& shape, Layout& parameters, Layout& statistics) {
-  if (shape.sight == Sight::kFeatures) return std::make_unique<TemporalNet<T>>(shape.views, shape.feature, parameters);
+  if (shape.observation.sight == Sight::kFeatures)
+    return std::make_unique<TemporalNet<T>>(shape.observation, shape.views, shape.feature, parameters);
   return std::make_unique<ResNet<T>>(shape.channels, shape.feature, shape.normalise_input, parameters, statistics);
 }
 

@@ -73,7 +73,7 @@ bool GridSet::at_choice(EnvTask, const WorldState& state) const {
   return treasure_under_agent(to_grid_state(state).now) >= 0;
 }
 
-size_t GridSet::observation_size() const { return size_t(kGridCells) * kHistory; }
+const ObservationSpec& GridSet::observation_spec() const { return grid_observation_spec(); }
 
 void GridSet::observe(int env, const StateHistory& history, int window, uint8_t* observation) const {
   draw_history(mazes_[env], history, window, observation);

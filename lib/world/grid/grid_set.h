@@ -37,8 +37,8 @@ class GridSet : public World {
   void action_values(EnvTask pair, const WorldState& state, int* cents) const override;
   bool at_choice(EnvTask pair, const WorldState& state) const override;
 
-  Sight sight() const override { return Sight::kPictures; }
-  size_t observation_size() const override;
+  const ObservationSpec& observation_spec() const override;
+  // `window` is the radius of what is seen.
   void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
 
   StartPlaces start_places(int env, const WorldState& start) const override;

@@ -38,6 +38,11 @@ void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t col
   paint(maze, frame, radius, colours, 1);
 }
 
+const ObservationSpec& grid_observation_spec() {
+  static const ObservationSpec spec = {Sight::kPictures, kGridSide, {kPalette.begin(), kPalette.end()}};
+  return spec;
+}
+
 void draw_history(const Maze& maze, const StateHistory& history, int radius, uint8_t* pictures) {
   std::memset(pictures, kUnseen, kGridCells * kHistory);
   for (int f = kHistory - history.count; f < kHistory; ++f)

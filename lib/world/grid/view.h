@@ -9,6 +9,7 @@
 
 #include "base/rgb.h"
 #include "world/grid/gridworld.h"
+#include "world/observation.h"
 
 namespace synpo {
 
@@ -29,6 +30,9 @@ constexpr float kPixelScale = 1.0f / 64;  // "fixed scaling": pixel value to net
 
 // The colour of every cell, row by row.
 void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]);
+
+// Pictures of kGridSide in the colours of kPalette.
+const ObservationSpec& grid_observation_spec();
 
 // The network's input: colours [16, 16, history], oldest first. Pictures from before the first step are black.
 void draw_history(const Maze& maze, const StateHistory& history, int radius, uint8_t* pictures);

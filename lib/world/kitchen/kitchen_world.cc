@@ -90,7 +90,10 @@ bool KitchenWorld::at_choice(EnvTask pair, const WorldState& state) const {
   return receptacle_in_reach(tables, at.pose, at.doors) >= 0;
 }
 
-size_t KitchenWorld::observation_size() const { return (kHistory * kViewFeatures + kHandFloats) * sizeof(float); }
+const ObservationSpec& KitchenWorld::observation_spec() const {
+  static const ObservationSpec spec = {Sight::kFeatures, 0, {}, kViewFeatures, kKitchenObjects + 1};
+  return spec;
+}
 
 void KitchenWorld::observe(int env, const StateHistory& history, int, uint8_t* observation) const {
   constexpr size_t kViewBytes = kViewFeatures * sizeof(float);
@@ -98,7 +101,7 @@ void KitchenWorld::observe(int env, const StateHistory& history, int, uint8_t* o
   std::memset(observation, 0, size_t(missing) * kViewBytes);
   for (int i = missing; i < kHistory; ++i)
     write_view(env, unpack(history.states[size_t(i)]), reinterpret_cast<float*>(observation + size_t(i) * kViewBytes));
-  const float hand[kHandFloats] = {float(unpack(history.now()).hand)};
+  const float hand[ObservationSpec::kObjectFloats] = {float(unpack(history.now()).hand)};
   std::memcpy(observation + kHistory * kViewBytes, hand, sizeof hand);
 }
 

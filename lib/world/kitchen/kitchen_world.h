@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "world/kitchen/planner.h"
+#include "world/kitchen/view/features.h"
 #include "world/world.h"
 
 namespace synpo {
@@ -25,11 +26,8 @@ class KitchenWorld : public World {
   void action_values(EnvTask pair, const WorldState& state, int* cents) const override;
   bool at_choice(EnvTask pair, const WorldState& state) const override;
 
-  Sight sight() const override { return Sight::kFeatures; }
-  size_t observation_size() const override;
-  // float [kHistory, kViewFeatures] of the views, oldest first and zero where there is none, then kHandFloats, of which
-  // the first is the number of the object in the hand now, kEmptyHand for none; the rest is zero. `window` means
-  // nothing here.
+  // Features, and the number of the object that is in the hand now, kEmptyHand for none. `window` means nothing here.
+  const ObservationSpec& observation_spec() const override;
   void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
 
   // "agent": row, column; "view": heading, horizon in degrees; and each object's name: row, column.

@@ -15,9 +15,6 @@
 #include "world/kitchen/plan.h"
 
 namespace synpo {
-
-static bool operator==(const Rgb& a, const Rgb& b) { return a.r == b.r && a.g == b.g && a.b == b.b; }
-
 namespace {
 
 const Font& font() {

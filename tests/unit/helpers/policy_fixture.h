@@ -21,16 +21,16 @@ inline std::vector<uint8_t> bytes_of(const std::vector<float>& values) {
 }
 
 inline std::vector<uint8_t> random_observations(int size, const PolicyShape& shape, Random& random) {
-  if (shape.sight == Sight::kPictures) {
+  if (shape.observation.sight == Sight::kPictures) {
     std::vector<uint8_t> pictures(size_t(size) * kGridCells * kHistory);
     for (uint8_t& colour : pictures) colour = uint8_t(random.below(kGridColours));
     return pictures;
   }
-  const size_t views = size_t(kHistory) * shape.views.view, row = views + kHandFloats;
+  const size_t row = shape.observation.bytes() / sizeof(float), views = row - ObservationSpec::kObjectFloats;
   std::vector<float> floats(size * row, 0.0f);
   for (int i = 0; i < size; ++i) {
     for (size_t j = 0; j < views; ++j) floats[i * row + j] = float(random.uniform());
-    floats[i * row + views] = float(random.below(uint32_t(shape.views.objects)));
+    floats[i * row + views] = float(random.below(uint32_t(shape.observation.objects)));
   }
   return bytes_of(floats);
 }
@@ -115,8 +115,15 @@ struct Network {
   std::vector<T> parameters, statistics, gradient, logits;
 };
 
-inline PolicyShape tiny_shape(bool normalise) {
+// For GridWorld.
+inline PolicyShape paper_shape() {
   PolicyShape shape;
+  shape.observation = grid_observation_spec();
+  return shape;
+}
+
+inline PolicyShape tiny_shape(bool normalise) {
+  PolicyShape shape = paper_shape();
   shape.channels = {4, 5, 4, 6};
   shape.envs = 3;
   shape.tasks = 4;
@@ -133,8 +140,8 @@ inline PolicyShape tiny_shape(bool normalise) {
 // That of a policy of features, which has an action count of its own.
 inline PolicyShape tiny_feature_shape() {
   PolicyShape shape = tiny_shape(false);
-  shape.sight = Sight::kFeatures;
-  shape.views = {5, 4, 3, 2, 6};
+  shape.observation = {Sight::kFeatures, 0, {}, 5, 3};
+  shape.views = {4, 2, 6};
   shape.actions = 7;
   return shape;
 }

@@ -12,6 +12,7 @@
 #include "play/kitchen_scenes.h"
 #include "play/model.h"
 #include "play/world_factory.h"
+#include "world/grid/view.h"
 
 namespace synpo {
 namespace {
@@ -413,7 +414,7 @@ TEST(SceneFolder, IsAWorldInNaturalOrder) {
 TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   const SceneKitchens scenes = world_of_scene(small_scene(1));
   PolicyShape shape;
-  shape.sight = Sight::kFeatures;
+  shape.observation = scenes.observation_spec();
   shape.envs = 1;
   shape.tasks = scenes.task_count();
   shape.actions = scenes.actions();
@@ -441,6 +442,31 @@ TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   EXPECT_EQ(planned.extractor, small_world().extractor());
   EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }),
             "64 the checkpoint holds its environments: -w is for those that lie in files of their own");
+}
+
+// Its encoder would read what the world does not write.
+TEST(SceneFolder, ACheckpointGoesWithObservationsOfItsSizesAlone) {
+  const auto loaded = [](auto&& change) {
+    PolicyShape shape;
+    shape.observation = small_world().observation_spec();
+    change(shape.observation);
+    shape.envs = 1;
+    shape.tasks = small_world().task_count();
+    shape.actions = small_world().actions();
+    shape.feature = shape.basis = shape.embedding = shape.hidden = 4;
+    shape.views.channels = shape.views.hidden = 4;
+    const Model model = fresh_model("synpo", shape, {});
+    Checkpoint checkpoint = describe_model(model, small_world());
+    add_tensors(checkpoint.file, "", model.policy->parameters(), model.parameters.data());
+    add_tensors(checkpoint.file, "", model.policy->statistics(), model.statistics.data());
+    return thrown([&] { load_model(checkpoint, small_world()); });
+  };
+  const std::string refused = "65 the network's shape does not fit the world";
+  EXPECT_EQ(loaded([](ObservationSpec&) {}), "nothing thrown");
+  EXPECT_EQ(loaded([](ObservationSpec& spec) { ++spec.view; }), refused);
+  EXPECT_EQ(loaded([](ObservationSpec& spec) { --spec.view; }), refused);
+  EXPECT_EQ(loaded([](ObservationSpec& spec) { --spec.objects; }), refused);
+  EXPECT_EQ(loaded([](ObservationSpec& spec) { spec = grid_observation_spec(); }), refused);
 }
 
 }  // namespace

@@ -22,9 +22,11 @@ struct Variant {
   PolicyShape shape(bool full = false) const {
     PolicyShape shape = sight == Sight::kFeatures ? tiny_feature_shape() : tiny_shape(normalise);
     if (full && sight == Sight::kFeatures) {
-      shape.views = {200, 136, 8, 32, 72};
+      shape.observation.view = 200;
+      shape.observation.objects = 8;
+      shape.views = {136, 32, 72};
     } else if (full) {
-      shape = PolicyShape();
+      shape = paper_shape();
       if (method != "synpo" || action_embedding > 0) shape.channels = tiny_shape(false).channels;
       shape.normalise_input = shape.normalise_embeddings = normalise;
     }

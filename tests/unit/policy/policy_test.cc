@@ -122,7 +122,7 @@ TEST(SynPo, StartsAsToldByTheSeed) {
 
 TEST(SynPo, FullSizeHasTable2sMultiplyAdds) {
   // As written 14.6 M a state; the transforms leave fewer.
-  const SynPo<float> policy{PolicyShape()};
+  const SynPo<float> policy{paper_shape()};
   EXPECT_LT(policy.encoder().multiply_adds(), 14600000u / 2);
   EXPECT_EQ(policy.parameters().find("encoder.fc.weight")->shape, (std::vector<int>{1024, 128}));
   EXPECT_EQ(policy.parameters().find("encoder.stage4.block2.conv2.weight")->shape, (std::vector<int>{3, 3, 256, 256}));

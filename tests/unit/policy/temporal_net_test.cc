@@ -13,11 +13,13 @@
 namespace synpo {
 namespace {
 
-constexpr TemporalSizes kTiny = {5, 4, 3, 2, 6};
-constexpr int kFeature = 3;
+constexpr int kView = 5, kObjects = 3, kFeature = 3;
+constexpr TemporalSizes kTiny = {4, 2, 6};
+
+ObservationSpec spec_of(int view, int objects) { return {Sight::kFeatures, 0, {}, view, objects}; }
 
 std::vector<uint8_t> observations_of(int n, const std::vector<float>& views, const std::vector<int>& hands, int view) {
-  const size_t row = size_t(kHistory) * view + kHandFloats;
+  const size_t row = size_t(kHistory) * view + ObservationSpec::kObjectFloats;
   std::vector<float> floats(n * row, 0);
   for (int i = 0; i < n; ++i) {
     std::copy_n(views.begin() + size_t(i) * kHistory * view, size_t(kHistory) * view, floats.begin() + i * row);
@@ -29,11 +31,14 @@ std::vector<uint8_t> observations_of(int n, const std::vector<float>& views, con
 // A network over random observations.
 template <class T>
 struct Fixture {
-  Fixture(const TemporalSizes& sizes, int feature, int n)
-      : n(n), net(sizes, feature, layout), views(random_values<float>(size_t(n) * kHistory * sizes.view, 3)) {
+  explicit Fixture(int n) : Fixture(spec_of(kView, kObjects), kTiny, kFeature, n) {}
+  Fixture(const ObservationSpec& spec, const TemporalSizes& sizes, int feature, int n)
+      : n(n), net(spec, sizes, feature, layout), views(random_values<float>(size_t(n) * kHistory * spec.view, 3)) {
     Random random(1, Purpose::kBatch);
-    for (int i = 0; i < n; ++i) hands.push_back(int(random.below(uint32_t(sizes.objects))));
-    observations = observations_of(n, views, hands, sizes.view);
+    for (int i = 0; i < n; ++i) hands.push_back(int(random.below(uint32_t(spec.objects))));
+    observations = observations_of(n, views, hands, spec.view);
+    EXPECT_EQ(observations.size(), n * spec.bytes());
+    EXPECT_EQ(net.observation_size(), spec.bytes());
     parameters.assign(layout.total(), T(0));
     gradient.assign(layout.total(), T(7));  // backward() overwrites
     net.initialise(5, parameters.data(), nullptr);
@@ -73,12 +78,12 @@ std::vector<double> convolved(const std::vector<double>& x, int length, int in, 
 }
 
 TEST(TemporalNet, IsTable3) {
-  Fixture<double> f(kTiny, kFeature, 9);
+  Fixture<double> f(9);
   Parallel parallel(2);
   const std::vector<double> psi = f.psi(parallel, kFeature);
   for (int i = 0; i < f.n; ++i) {
-    const auto first = f.views.begin() + size_t(i) * kHistory * kTiny.view;
-    std::vector<double> x = convolved({first, first + kHistory * kTiny.view}, 4, kTiny.view, kTiny.channels,
+    const auto first = f.views.begin() + size_t(i) * kHistory * kView;
+    std::vector<double> x = convolved({first, first + kHistory * kView}, 4, kView, kTiny.channels,
                                       f.at("encoder.conv1.weight"), f.at("encoder.conv1.bias"));
     x = convolved(x, 2, kTiny.channels, kTiny.channels, f.at("encoder.conv2.weight"), f.at("encoder.conv2.bias"));
     const double* object = f.at("encoder.object") + size_t(f.hands[i]) * kTiny.object_embedding;
@@ -98,7 +103,7 @@ TEST(TemporalNet, IsTable3) {
 
 TEST(TemporalNet, FullSizeHasTable3sShapes) {
   Layout layout;
-  const TemporalNet<float> net({}, 256, layout);
+  const TemporalNet<float> net(spec_of(2048, 8), {}, 256, layout);
   EXPECT_EQ(layout.find("encoder.conv1.weight")->shape, (std::vector<int>{3, 2048, 1024}));
   EXPECT_EQ(layout.find("encoder.conv2.weight")->shape, (std::vector<int>{3, 1024, 1024}));
   EXPECT_EQ(layout.find("encoder.fc.hidden.weight")->shape, (std::vector<int>{1056, 2048}));
@@ -107,7 +112,7 @@ TEST(TemporalNet, FullSizeHasTable3sShapes) {
 }
 
 TEST(TemporalNet, GradientIsThatOfFiniteDifferences) {
-  Fixture<double> f(kTiny, kFeature, 70);  // more than a shard
+  Fixture<double> f(70);  // more than a shard
   Parallel parallel(2);
   const std::vector<double> by = random_values<double>(size_t(f.n) * kFeature, 11);
   const auto loss = [&] {
@@ -133,8 +138,7 @@ TEST(TemporalNet, GradientIsThatOfFiniteDifferences) {
 }
 
 TEST(TemporalNet, InferenceGivesWhatTrainingGave) {
-  const TemporalSizes sizes = {96, 64, 8, 32, 128};
-  Fixture<float> f(sizes, 48, 130);
+  Fixture<float> f(spec_of(96, 8), {64, 32, 128}, 48, 130);
   Parallel one(1), two(2);
   const std::vector<float> psi = f.psi(two, 48);
   EXPECT_EQ(f.psi(one, 48), psi);
@@ -146,7 +150,7 @@ TEST(TemporalNet, InferenceGivesWhatTrainingGave) {
 }
 
 TEST(TemporalNet, ObservationsMayStandAnywhere) {
-  Fixture<float> f(kTiny, kFeature, 9);
+  Fixture<float> f(9);
   Parallel parallel(1);
   const std::vector<float> psi = f.psi(parallel, kFeature);
   const std::vector<uint8_t> bytes = f.observations;
@@ -158,10 +162,9 @@ TEST(TemporalNet, ObservationsMayStandAnywhere) {
 }
 
 TEST(TemporalNet, ThreadsDoNotShowInTheGradient) {
-  const TemporalSizes sizes = {600, 520, 8, 32, 40};  // so large that threads pack them together
   std::vector<float> gradients[2];
   for (const int threads : {1, 2}) {
-    Fixture<float> f(sizes, 16, 150);
+    Fixture<float> f(spec_of(600, 8), {520, 32, 40}, 16, 150);  // so large that threads pack them together
     Parallel parallel(threads);
     std::vector<float> dpsi = f.psi(parallel, 16);
     f.net.backward(parallel, f.parameters.data(), dpsi.data(), f.gradient.data());

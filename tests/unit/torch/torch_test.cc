@@ -41,9 +41,10 @@ PolicyShape shape_of(const SafeTensors& dump) {
   const auto size = [&](const char* name) { return std::atoi(dump.meta(name).c_str()); };
   PolicyShape shape;
   if (dump.metadata.count("view")) {
-    shape.sight = Sight::kFeatures;
-    shape.views = {size("view"), size("view_channels"), size("objects"), size("object_embedding"), size("view_hidden")};
+    shape.observation = {Sight::kFeatures, 0, {}, size("view"), size("objects")};
+    shape.views = {size("view_channels"), size("object_embedding"), size("view_hidden")};
   } else {
+    shape.observation = grid_observation_spec();
     const std::string& channels = dump.meta("channels");
     EXPECT_EQ(std::sscanf(channels.c_str(), "%d,%d,%d,%d", &shape.channels[0], &shape.channels[1], &shape.channels[2],
                           &shape.channels[3]),
@@ -104,8 +105,9 @@ Worst compare_with_dump(const std::string& path) {
   }
   for (const TensorInfo& tensor : net.policy->statistics().tensors())
     std::fill_n(net.statistics.data() + tensor.offset, tensor.size, tensor.name.ends_with(".variance") ? 1.0f : 0.0f);
-  const std::vector<uint8_t> observations =
-      shape.sight == Sight::kFeatures ? bytes_of(dump.get<float>("input")) : colour_indices(dump.get<uint8_t>("input"));
+  const std::vector<uint8_t> observations = shape.observation.sight == Sight::kFeatures
+                                                ? bytes_of(dump.get<float>("input"))
+                                                : colour_indices(dump.get<uint8_t>("input"));
   const std::vector<int> env = whole_numbers(dump, "env"), task = whole_numbers(dump, "task"),
                          label = whole_numbers(dump, "label"), taken = whole_numbers(dump, "taken");
   const std::vector<float> reward = dump.get<float>("reward");

@@ -338,7 +338,7 @@ TEST(KitchenSet, ObservesTheLastFourViewsAndTheHand) {
     history.push(states.back());
     std::vector<uint8_t> bytes(world().observation_size() + 1, 0x5a);
     world().observe(env, history, 1, bytes.data() + 1);  // nobody promises that it is aligned
-    std::vector<float> observation(kKitchenObservation);
+    std::vector<float> observation(world().observation_size() / sizeof(float));
     std::memcpy(observation.data(), bytes.data() + 1, world().observation_size());
     for (int view = 0; view < 4; ++view) {
       const int of = int(step) - 3 + view;
@@ -349,7 +349,7 @@ TEST(KitchenSet, ObservesTheLastFourViewsAndTheHand) {
           << step << " " << view;
     }
     ASSERT_EQ(observation[4 * kViewFeatures], float(unpack(states.back()).hand));
-    for (int i = 1; i < kHandFloats; ++i) ASSERT_EQ(observation[size_t(4 * kViewFeatures + i)], 0);
+    for (int i = 1; i < ObservationSpec::kObjectFloats; ++i) ASSERT_EQ(observation[size_t(4 * kViewFeatures + i)], 0);
   }
 }
 

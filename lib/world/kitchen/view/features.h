@@ -3,16 +3,14 @@
 // out among the eight nearest bins in proportion to how near it is. A feature is 8 sqrt(share of the cell): a small
 // object in a large cell still shows. Features stand by cell, row by row, then by r, g, b.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 
 #include "world/kitchen/view/view.h"
-#include "world/world.h"
 
 namespace synpo {
 
 constexpr const char* kExtractorName = "colour-histograms-1";
-constexpr size_t kKitchenObservation = kHistory * kViewFeatures + kHandFloats;  // floats
+constexpr int kViewFeatures = 2048;
 
 // Of the extractor's name and numbers: features of two extractors with one hash mean the same.
 uint64_t extractor_hash();
