@@ -69,9 +69,10 @@ $(B)/tests/bench/synpo-bench.o: ALL_CXXFLAGS += -march=native
 # Only lib/draw/canvas and lib/draw/vision, and the tests of drawing, see OpenCV.
 $(B)/lib/draw/canvas/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: ALL_CXXFLAGS += $(OPENCV_CFLAGS)
 
+# Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same level.
 $(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
 	@mkdir -p $(@D)
-	$(CXX) $(ALL_CXXFLAGS) -Wno-psabi $(TARGET_$*) -DSYNPO_TARGET=$* -c -o $@ $<
+	$(CXX) $(ALL_CXXFLAGS) -O3 -Wno-psabi $(TARGET_$*) -DSYNPO_TARGET=$* -c -o $@ $<
 
 $(B)/%.o: %.cc
 	@mkdir -p $(@D)

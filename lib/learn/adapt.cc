@@ -13,14 +13,12 @@ namespace {
 
 constexpr int kUnit = Policy<float>::kInferenceUnit;
 
-const TensorInfo& table(const Policy<float>& policy, const char* name) {
-  const TensorInfo* tensor = policy.parameters().find(name);
-  if (!tensor) fail(Exit::kUsage, "the method has no tensor '", name, "': nothing to adapt");
+const TensorInfo& table(const Policy<float>& policy, PairSide side) {
+  const TensorInfo* tensor = policy.embeddings(side);
+  if (!tensor)
+    fail(Exit::kUsage, "the method has no tensor 'embedding.", side == PairSide::kEnv ? "env" : "task",
+         "': nothing to adapt");
   return *tensor;
-}
-
-bool starts_with_any(const std::string& name, std::initializer_list<const char*> prefixes) {
-  return std::any_of(prefixes.begin(), prefixes.end(), [&](const char* prefix) { return name.starts_with(prefix); });
 }
 
 }  // namespace
@@ -56,7 +54,7 @@ Model widen(const Model& model, const World& from, const World& world, double em
   wide.parameters.zero();
   wide.statistics.grow(wide.policy->statistics().total());
   std::copy_n(model.statistics.data(), wide.policy->statistics().total(), wide.statistics.data());
-  const TensorInfo &envs = table(*wide.policy, "embedding.env"), &tasks = table(*wide.policy, "embedding.task");
+  const TensorInfo &envs = table(*wide.policy, PairSide::kEnv), &tasks = table(*wide.policy, PairSide::kTask);
   for (const TensorInfo& tensor : after.tensors())
     if (tensor.name != envs.name)
       std::copy_n(model.parameters.data() + before.find(tensor.name)->offset, tensor.size,
@@ -108,13 +106,16 @@ std::vector<Adaptation::Span> Adaptation::learned() const {
         spans.push_back({offset, width});
     }
   };
-  add_rows(table(*model_.policy, "embedding.env"), new_env_);
-  add_rows(table(*model_.policy, "embedding.task"), new_task_);
-  for (const TensorInfo& tensor : model_.policy->parameters().tensors())
-    if ((options_.targets.heads &&
-         starts_with_any(tensor.name, {"theta", "phi", "policy.", "reward.", "f_env.", "f_task."})) ||
-        (options_.targets.coefficients && starts_with_any(tensor.name, {"alpha.", "beta."})))
-      spans.push_back({tensor.offset, tensor.size});
+  add_rows(table(*model_.policy, PairSide::kEnv), new_env_);
+  add_rows(table(*model_.policy, PairSide::kTask), new_task_);
+  const auto add_group = [&](ParameterGroup group) {
+    for (const TensorInfo* tensor : model_.policy->group(group)) spans.push_back({tensor->offset, tensor->size});
+  };
+  if (options_.targets.heads) {
+    add_group(ParameterGroup::kHeads);
+    add_group(ParameterGroup::kRecognisers);
+  }
+  if (options_.targets.coefficients) add_group(ParameterGroup::kCoefficients);
   return spans;
 }
 
@@ -152,12 +153,13 @@ void Adaptation::compute_features() {
 }
 
 bool Adaptation::has_embedding_loss() const {
-  return EmbeddingLoss::fits(model_) && !options_.targets.heads && !options_.targets.coefficients &&
-         env_.size() <= options_.memory_bytes / EmbeddingLoss::step_bytes(model_.shape);
+  const size_t step_bytes = model_.policy->embedding_loss_step_bytes();
+  return step_bytes > 0 && !options_.targets.heads && !options_.targets.coefficients &&
+         env_.size() <= options_.memory_bytes / step_bytes;
 }
 
 void Adaptation::extend_embedding_loss() {
-  if (!embedding_loss_) embedding_loss_.emplace(model_, new_env_, new_task_);
+  if (!embedding_loss_) embedding_loss_ = model_.policy->embedding_loss(model_.parameters.data(), new_env_, new_task_);
   std::vector<EmbeddingLoss::Steps> episodes;
   for (size_t i = embedding_loss_->episodes(); i < demonstrations(); ++i) {
     const size_t at = first_[i];

@@ -2,15 +2,14 @@
 // from a few demonstrations, as in Algorithm 1, while all else stays as it is.
 //
 // New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi,
-// and where embeddings alone are learned, all that embedding_loss.h keeps.
+// and where embeddings alone are learned, all that the method's EmbeddingLoss keeps.
 #pragma once
 #include <map>
-#include <optional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/parallel.h"
-#include "learn/embedding_loss.h"
 #include "nn/adam.h"
 #include "play/model.h"
 
@@ -28,8 +27,8 @@ struct AdaptOptions {
   LossWeights losses;
   double embedding_sd = 0;
   AdaptTargets targets;
-  // For what embedding_loss.h keeps. Where it is not enough, updates go through the whole head, which takes ten times
-  // as long.
+  // For what the method's EmbeddingLoss keeps. Where it is not enough, updates go through the whole head, which takes
+  // ten times as long.
   size_t memory_bytes = size_t(2) << 30;
 };
 
@@ -80,7 +79,7 @@ class Adaptation {
   std::vector<float> reward_, psi_;
   Buffer<float> gradient_, first_moment_, second_moment_;
   std::vector<float> logits_;
-  std::optional<EmbeddingLoss> embedding_loss_;
+  std::unique_ptr<EmbeddingLoss> embedding_loss_;
   int64_t updates_ = 0;
 };
 

@@ -13,8 +13,8 @@ namespace synpo {
 namespace {
 
 // A method's row of embeddings, or nothing.
-const float* embedding_row(const Model& model, const char* name, int row, int width) {
-  const TensorInfo* tensor = model.policy->parameters().find(name);
+const float* embedding_row(const Model& model, PairSide side, int row, int width) {
+  const TensorInfo* tensor = model.policy->embeddings(side);
   return tensor ? model.parameters.data() + tensor->offset + size_t(row) * width : nullptr;
 }
 
@@ -120,17 +120,17 @@ Ppo::Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& 
 
 int Ppo::value_inputs() const {
   const PolicyShape& shape = model_.shape;
-  const auto width = [&](const char* name, int count) {
-    return model_.policy->parameters().find(name) ? shape.embedding : count;
+  const auto width = [&](PairSide side, int count) {
+    return model_.policy->embeddings(side) ? shape.embedding : count;
   };
-  return shape.feature + width("embedding.env", shape.envs) + width("embedding.task", shape.tasks);
+  return shape.feature + width(PairSide::kEnv, shape.envs) + width(PairSide::kTask, shape.tasks);
 }
 
 void Ppo::make_value_input(const float* psi, int env, int task, float* x) const {
   const PolicyShape& shape = model_.shape;
   x = std::copy_n(psi, shape.feature, x);
-  const auto put = [&](const char* name, int row, int count) {
-    if (const float* embedding = embedding_row(model_, name, row, shape.embedding)) {
+  const auto put = [&](PairSide side, int row, int count) {
+    if (const float* embedding = embedding_row(model_, side, row, shape.embedding)) {
       x = std::copy_n(embedding, shape.embedding, x);
       return;
     }
@@ -138,8 +138,8 @@ void Ppo::make_value_input(const float* psi, int env, int task, float* x) const 
     x[row] = 1;
     x += count;
   };
-  put("embedding.env", env, shape.envs);
-  put("embedding.task", task, shape.tasks);
+  put(PairSide::kEnv, env, shape.envs);
+  put(PairSide::kTask, task, shape.tasks);
 }
 
 void Ppo::measure_statistics(int batches) {

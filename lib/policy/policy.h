@@ -1,6 +1,5 @@
 // What every method is to the learner and the evaluator: parameters in one flat array, a training step, and inference.
 #pragma once
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -9,6 +8,8 @@
 
 #include "base/parallel.h"
 #include "nn/layout.h"
+#include "policy/embedding_loss.h"
+#include "policy/losses.h"
 #include "policy/temporal_sizes.h"
 #include "world/observation.h"
 
@@ -41,26 +42,11 @@ struct InitOptions {
   double embedding_sd = 0;  // embeddings are drawn from N(0, sd^2); 0: Xavier uniform
 };
 
-// The weights lambda of the auxiliary losses (supplement, Section 2).
-struct LossWeights {
-  double reward = 0.01, env = 0.1, task = 0.001;
-};
-
 // How a training step learns from its batch.
 struct StepOptions {
   LossWeights weights = {};
   double dropout = 0;      // ModuleNet: probability that a value at the seam is left out
   double discount = 0.99;  // SF: gamma
-};
-
-// Means over the steps of a batch; NaN where the method has no such loss. `total` is weighted.
-struct Losses {
-  double total = 0, policy = 0, reward = 0, env = 0, task = 0;
-  void add_up(const LossWeights& weights) {
-    total = policy;
-    for (const auto& [weight, loss] : {std::pair{weights.reward, reward}, {weights.env, env}, {weights.task, task}})
-      if (!std::isnan(loss)) total += weight * loss;
-  }
 };
 
 // A loss of the scores other than imitation's, for a batch of n states: psi [n, feature], logits and dlogits [n,
@@ -103,13 +89,34 @@ struct BatchNeeds {
 // most of its moves still walks in circles where it has not.
 constexpr double kTemperature = 0.5;
 
+// What a pair is made of, and what has embeddings.
+enum class PairSide { kEnv, kTask };
+
+// What the parameters of a method are for.
+enum class ParameterGroup {
+  kEncoder,       // makes psi of what is seen
+  kEmbeddings,    // of environments and tasks
+  kRecognisers,   // f_env and f_task
+  kCoefficients,  // alpha and beta
+  kHeads          // makes scores and rewards
+};
+
 template <class T>
 class Policy {
  public:
   virtual ~Policy() = default;
   const Layout& parameters() const { return parameters_; }
   const Layout& statistics() const { return statistics_; }  // running statistics of batch normalisation
-  virtual size_t observation_size() const = 0;              // bytes of a state
+  // The table of embeddings [environments, or tasks; width]; nullptr where the method has none.
+  const TensorInfo* embeddings(PairSide side) const;
+  std::vector<const TensorInfo*> group(ParameterGroup group) const;
+  // The loss of the embeddings of these environments and tasks, everything else taken as it is in `parameters`, and how
+  // many bytes it keeps of a step. nullptr and 0 where the method has none.
+  virtual std::unique_ptr<EmbeddingLoss> embedding_loss(const T* parameters, const std::vector<bool>& new_env,
+                                                        const std::vector<bool>& new_task) const;
+  virtual size_t embedding_loss_step_bytes() const { return 0; }
+
+  virtual size_t observation_size() const = 0;  // bytes of a state
   virtual BatchNeeds needs() const { return {}; }
   // See kTemperature; 0 where scores are values, whose best action is taken.
   virtual double temperature() const { return kTemperature; }
@@ -132,7 +139,17 @@ class Policy {
                      T* psi = nullptr) = 0;
 
  protected:
+  // The method's own groups: how the names of their tensors begin.
+  struct OwnGroup {
+    ParameterGroup group;
+    std::vector<std::string> beginnings;
+  };
+  virtual std::vector<OwnGroup> own_groups() const { return {}; }
+
   Layout parameters_, statistics_;
 };
+
+extern template class Policy<float>;
+extern template class Policy<double>;
 
 }  // namespace synpo

@@ -78,11 +78,11 @@ int embedding(int argc, char** argv) {
 
   std::vector<Embeddings> panels;
   std::string of;
-  if (const TensorInfo* place = model.policy->parameters().find("embedding.env")) {
+  if (const TensorInfo* place = model.policy->embeddings(PairSide::kEnv)) {
     panels.push_back(read_embeddings(model, place, "environments", envs));
     of = concat(count_text(envs.size(), world.envs()), " environments and ");
   }
-  if (const TensorInfo* place = model.policy->parameters().find("embedding.task")) {
+  if (const TensorInfo* place = model.policy->embeddings(PairSide::kTask)) {
     panels.push_back(read_embeddings(model, place, "tasks", tasks));
     of += concat(count_text(tasks.size(), world.task_count()), " tasks");
     if (grid)

@@ -3,16 +3,14 @@
 namespace synpo {
 
 template <class T>
-FrozenPerceptron<T>::FrozenPerceptron(const std::string& name, const Layout& layout, const T* parameters) {
-  const auto take = [&](const std::string& dense, Packed<T>& weight, Packed<T>& transposed, std::vector<T>& bias) {
-    const TensorInfo &w = *layout.find(dense + ".weight"), &b = *layout.find(dense + ".bias");
-    const int in = w.shape[0], out = w.shape[1];
-    weight.pack(Op::kAsIs, in, out, parameters + w.offset, out);
-    transposed.pack(Op::kTransposed, out, in, parameters + w.offset, out);
-    bias.assign(parameters + b.offset, parameters + b.offset + out);
-  };
-  take(name + ".hidden", hidden_, hidden_transposed_, hidden_bias_);
-  take(name + ".out", out_, out_transposed_, out_bias_);
+FrozenPerceptron<T>::FrozenPerceptron(const PerceptronPlace& place, const T* parameters)
+    : hidden_bias_(parameters + place.hidden_bias, parameters + place.hidden_bias + place.hidden),
+      out_bias_(parameters + place.out_bias, parameters + place.out_bias + place.out) {
+  const T *hidden = parameters + place.hidden_weight, *out = parameters + place.out_weight;
+  hidden_.pack(Op::kAsIs, place.in, place.hidden, hidden, place.hidden);
+  hidden_transposed_.pack(Op::kTransposed, place.hidden, place.in, hidden, place.hidden);
+  out_.pack(Op::kAsIs, place.hidden, place.out, out, place.out);
+  out_transposed_.pack(Op::kTransposed, place.out, place.hidden, out, place.out);
 }
 
 template <class T>

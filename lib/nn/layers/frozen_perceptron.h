@@ -1,19 +1,17 @@
 // A perceptron (perceptron.h) whose weights stay as they are: packed once for both ways, and of gradients that of its
 // input alone.
 #pragma once
-#include <string>
 #include <vector>
 
 #include "nn/gemm.h"
-#include "nn/layout.h"
+#include "nn/layers/perceptron.h"
 
 namespace synpo {
 
 template <class T>
 class FrozenPerceptron {
  public:
-  // Takes over NAME.hidden.weight, NAME.hidden.bias, NAME.out.weight and NAME.out.bias, which `layout` has.
-  FrozenPerceptron(const std::string& name, const Layout& layout, const T* parameters);
+  FrozenPerceptron(const PerceptronPlace& place, const T* parameters);
 
   int in() const { return hidden_.k(); }
   int hidden() const { return hidden_.n(); }

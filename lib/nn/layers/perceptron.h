@@ -10,6 +10,12 @@
 
 namespace synpo {
 
+// Sizes of a perceptron, and where its tensors stand among the parameters.
+struct PerceptronPlace {
+  int in, hidden, out;
+  size_t hidden_weight, hidden_bias, out_weight, out_bias;
+};
+
 template <class T>
 class Perceptron {
  public:
@@ -18,6 +24,7 @@ class Perceptron {
 
   int in() const { return in_; }
   int out() const { return out_; }
+  PerceptronPlace place() const { return {in_, hidden_, out_, hidden_weight_, hidden_bias_, out_weight_, out_bias_}; }
 
   // Weights Xavier uniform; biases are left as they are.
   void initialise(InitStream& stream, T* parameters) const;

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "nn/layers/conv.h"
-#include "nn/layers/norm.h"
+#include "nn/layers/residual_block.h"
 #include "nn/layout.h"
 #include "policy/encoder/encoder.h"
 #include "world/grid/view.h"
@@ -37,50 +36,24 @@ class ResNet : public Encoder<T> {
   size_t multiply_adds() const override;
 
  private:
-  struct NormPlace {
-    size_t scale, shift, mean, variance;
-  };
-  struct Block {
-    std::vector<Conv<T>> convs;  // conv1, conv2 and, where the shape changes, the shortcut's
-    size_t weights[3];
-    NormPlace places[3];
-    BatchNorm<T> norms[3];
-    std::vector<T> frozen[3];  // scale, then shift, for inference
-    Buffer<T> z[3],
-        y;  // outputs of the convolutions; after the last ReLU. What is after the inner one is made anew where needed
-    Buffer<T> dfactors[3];  // gradients of transformed weights
-    bool has_shortcut() const { return convs.size() == 3; }
-  };
-  void expand(int n, const uint8_t* pictures, const T* mean, const T* inverse_sd, T* x) const;
+  void expand(int n, const uint8_t* pictures, T* x) const;
   void freeze_input(const T* statistics);
   void normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics);
-  void prepare_convs(Parallel& parallel, const T* parameters, bool training);
-  void finish_block(Block& block, Range samples);
-  void backward_inner(Parallel& parallel, Block& block, const T* parameters, T* gradient);
-  void backward_outer(Parallel& parallel, size_t b, T* gradient);
-  void weight_gradients(Parallel& parallel, Block& block, std::initializer_list<int> convs, Range samples, T* gradient);
-  void add_block_sums(Block& block, int shard, Range samples, T* d);
-  void finish_norm_backward(Block& block, int i, const T* parameters, T* gradient);
-  const T* block_input(size_t b) const { return b == 0 ? input_.data() : blocks_[b - 1].y.data(); }
+  void prepare_blocks(Parallel& parallel, const T* parameters, bool training);
 
   static constexpr size_t kInputSize = size_t(kGridCells) * kViewChannels;  // of one sample
 
   int feature_;
   bool normalise_input_;
-  std::vector<Block> blocks_;
+  std::vector<ResidualBlock<T>> blocks_;
   size_t fc_weight_, fc_bias_, input_mean_ = 0, input_variance_ = 0;
   size_t flat_ = 0;     // inputs of the dense layer
-  size_t largest_ = 0;  // values of the largest picture behind the first convolution
+  size_t largest_ = 0;  // values of the largest output of a block
   int n_ = 0;
-  Buffer<T> input_, d_, dx_,
-      dy1_;  // gradients of a block's output, of its input where that has another shape, and behind its inner ReLU
+  Buffer<T> input_;
   std::vector<T> input_shift_, input_scale_;  // per channel of the input
-  typename Conv<T>::Slab slabs_[3];           // of a block's convolutions
-  struct Scratch {
-    Buffer<T> products, picture, second;
-  };
-  std::vector<Scratch> scratch_;  // a thread's own
-  Packed<T> fc_packed_;           // for inference
+  ResidualWorkspace<T> work_;
+  Packed<T> fc_packed_;  // for inference
   std::vector<T> fc_bias_values_;
 };
 

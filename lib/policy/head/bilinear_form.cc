@@ -122,6 +122,20 @@ void BilinearForm<T>::infer(int rows, const T* q, T* scores) const {
 }
 
 template <class T>
+void BilinearForm<T>::make_action_matrix(int action, const T* parameters, T* matrix) const {
+  const size_t size = action_matrix_size();
+  if (direct()) {
+    std::copy_n(parameters + theta_ + action * size, size, matrix);
+    return;
+  }
+  for (int row = 0; row < feature_; ++row) {
+    const size_t at = size_t(row) * basis_;
+    gemm(Op::kAsIs, Op::kAsIs, 1, basis_, columns_, parameters + phi_ + size_t(action) * columns_, columns_,
+         parameters + theta_ + at, int(size), matrix + at, int(size));
+  }
+}
+
+template <class T>
 void BilinearForm<T>::use_actions(Parallel& parallel, const std::vector<int>& actions, const T* parameters) {
   used_ = actions;
   if (direct()) return;

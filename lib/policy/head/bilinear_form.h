@@ -48,6 +48,8 @@ class BilinearForm {
   void prepare_inference(const T* parameters);
   void infer(int rows, const T* q, T* scores) const;
 
+  // theta phi(a) [d, K] of one action.
+  void make_action_matrix(int action, const T* parameters, T* matrix) const;
   // For x(s, a): the matrices theta phi(a) [d, K] of some different actions. Gradients of them that have come together
   // in action_matrix_gradient() are taken further by finish_actions().
   void use_actions(Parallel& parallel, const std::vector<int>& actions, const T* parameters);

@@ -17,6 +17,9 @@ class EmbeddingTable {
 
   int count() const { return count_; }
   int width() const { return width_; }
+  // Where it stands among the parameters, and how many values it has there.
+  size_t offset() const { return at_; }
+  size_t size() const { return size_t(count_) * width_; }
 
   // N(0, sd^2); Xavier uniform where sd is 0.
   void initialise(InitStream& stream, double sd, T* parameters) const;

@@ -14,6 +14,7 @@ class Recogniser {
   Recogniser(const std::string& name, int in, int hidden, const EmbeddingTable<T>& table, Layout& parameters);
 
   void initialise(InitStream& stream, T* parameters) const { f_.initialise(stream, parameters); }
+  const Perceptron<T>& perceptron() const { return f_; }
 
   // The mean cross-entropy of x [rows, in] against truth [rows]. `weight` times its gradients are added to dx, to the
   // parameters' gradient and to the table's.

@@ -18,6 +18,11 @@ Mlp<T>::Mlp(const PolicyShape& shape)
       f_task_("f_task", shape.feature, shape.hidden, task_, this->parameters_) {}
 
 template <class T>
+std::vector<typename Policy<T>::OwnGroup> Mlp<T>::own_groups() const {
+  return {{ParameterGroup::kRecognisers, {"f_env.", "f_task."}}, {ParameterGroup::kHeads, {"policy.", "reward."}}};
+}
+
+template <class T>
 void Mlp<T>::initialise_head(InitStream& stream, double embedding_sd, T* parameters) const {
   env_.initialise(stream, embedding_sd, parameters);
   task_.initialise(stream, embedding_sd, parameters);

@@ -16,6 +16,7 @@ class Mlp : public EncodedPolicy<T> {
   explicit Mlp(const PolicyShape& shape);
 
  protected:
+  std::vector<typename Policy<T>::OwnGroup> own_groups() const override;
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
   Losses head_step(const HeadStep<T>& step) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;

@@ -18,6 +18,11 @@ ModuleNet<T>::ModuleNet(const PolicyShape& shape) : EncodedPolicy<T>(shape) {
 }
 
 template <class T>
+std::vector<typename Policy<T>::OwnGroup> ModuleNet<T>::own_groups() const {
+  return {{ParameterGroup::kHeads, {"module."}}};
+}
+
+template <class T>
 void ModuleNet<T>::initialise_head(InitStream& stream, double, T* parameters) const {
   for (const Modules* modules : {&task_, &env_})
     for (const Perceptron<T>& module : modules->each) module.initialise(stream, parameters);

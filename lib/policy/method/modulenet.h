@@ -17,6 +17,7 @@ class ModuleNet : public EncodedPolicy<T> {
   explicit ModuleNet(const PolicyShape& shape);
 
  protected:
+  std::vector<typename Policy<T>::OwnGroup> own_groups() const override;
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
   Losses head_step(const HeadStep<T>& step) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;

@@ -21,6 +21,11 @@ BatchNeeds Sf<T>::needs() const {
 }
 
 template <class T>
+std::vector<typename Policy<T>::OwnGroup> Sf<T>::own_groups() const {
+  return {{ParameterGroup::kHeads, {"phi."}}};
+}
+
+template <class T>
 void Sf<T>::initialise_head(InitStream& stream, double embedding_sd, T* parameters) const {
   env_.initialise(stream, embedding_sd, parameters);
   task_.initialise(stream, embedding_sd, parameters);

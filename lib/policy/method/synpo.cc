@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 #include "nn/gemm.h"
+#include "policy/method/synpo_embedding_loss.h"
 
 namespace synpo {
 namespace {
@@ -25,6 +27,13 @@ SynPo<T>::SynPo(const PolicyShape& shape, Context context)
       f_env_(env_ ? Recogniser<T>("f_env", shape.basis, shape.hidden, *env_, this->parameters_)
                   : std::optional<Recogniser<T>>()),
       f_task_("f_task", shape.basis, shape.hidden, task_, this->parameters_) {}
+
+template <class T>
+std::vector<typename Policy<T>::OwnGroup> SynPo<T>::own_groups() const {
+  return {{ParameterGroup::kRecognisers, {"f_env.", "f_task."}},
+          {ParameterGroup::kCoefficients, {"alpha.", "beta."}},
+          {ParameterGroup::kHeads, {"theta", "phi", "policy.", "reward."}}};
+}
 
 template <class T>
 void SynPo<T>::initialise_head(InitStream& stream, double embedding_sd, T* parameters) const {
@@ -223,6 +232,19 @@ void SynPo<T>::infer_head(int size, const T* psi, const int* pair, T* logits) co
                 q.data() + size_t(i) * columns);
   form_.infer(size, q.data(), logits);
   kernels<T>().add_bias(size, shape().actions, policy_bias_.data(), false, logits);
+}
+
+template <class T>
+std::unique_ptr<EmbeddingLoss> SynPo<T>::embedding_loss(const T* parameters, const std::vector<bool>& new_env,
+                                                        const std::vector<bool>& new_task) const {
+  if constexpr (std::is_same_v<T, float>)
+    if (env_) return std::make_unique<SynPoEmbeddingLoss>(*this, parameters, new_env, new_task);
+  return nullptr;
+}
+
+template <class T>
+size_t SynPo<T>::embedding_loss_step_bytes() const {
+  return std::is_same_v<T, float> && env_ ? SynPoEmbeddingLoss::step_bytes(shape()) : 0;
 }
 
 template class SynPo<float>;

@@ -26,13 +26,19 @@ class SynPo : public EncodedPolicy<T> {
   enum class Context { kEnvAndTask, kTask };  // what coefficients are made from
   explicit SynPo(const PolicyShape& shape, Context context = Context::kEnvAndTask);
 
+  std::unique_ptr<EmbeddingLoss> embedding_loss(const T* parameters, const std::vector<bool>& new_env,
+                                                const std::vector<bool>& new_task) const override;
+  size_t embedding_loss_step_bytes() const override;
+
  protected:
+  std::vector<typename Policy<T>::OwnGroup> own_groups() const override;
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
   Losses head_step(const HeadStep<T>& step) override;
   void prepare_head(Parallel& parallel, const T* parameters, const std::vector<std::pair<int, int>>& pairs) override;
   void infer_head(int size, const T* psi, const int* pair, T* logits) const override;
 
  private:
+  friend class SynPoEmbeddingLoss;  // which takes its parts over
   enum Head { kPolicy, kReward, kHeads };
   using EncodedPolicy<T>::shape;
   int coefficient_inputs() const { return (env_ ? 2 : 1) * shape().embedding; }

@@ -226,7 +226,7 @@ TEST(FrozenPerceptron, IsThePerceptron) {
   Perceptron<double> moving("p", kIn, kHidden, kOut, layout);
   const std::vector<double> parameters = random_values<double>(layout.total(), 1),
                             x = random_values<double>(kRows * kIn, 2);
-  const FrozenPerceptron<double> frozen("p", layout, parameters.data());
+  const FrozenPerceptron<double> frozen(moving.place(), parameters.data());
   ASSERT_EQ(frozen.in(), kIn);
   ASSERT_EQ(frozen.hidden(), kHidden);
   ASSERT_EQ(frozen.out(), kOut);

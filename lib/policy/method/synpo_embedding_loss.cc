@@ -1,9 +1,8 @@
-#include "learn/embedding_loss.h"
+#include "policy/method/synpo_embedding_loss.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "nn/loss.h"
 #include "policy/head/bilinear_form.h"
@@ -14,35 +13,19 @@ namespace {
 constexpr int kRows = 32;  // pairs of a shard, where coefficients are made
 constexpr int kPairs = 4;  // and where their steps are gone through
 
-const TensorInfo& find(const Model& model, const std::string& name) { return *model.policy->parameters().find(name); }
-
-std::vector<float> values(const Model& model, const std::string& name) {
-  const TensorInfo& tensor = find(model, name);
-  return {model.parameters.data() + tensor.offset, model.parameters.data() + tensor.offset + tensor.size};
-}
-
-EmbeddingTable<float> table_of(const PolicyShape& shape, int count) {
-  Layout alone;
-  return {"embedding", count, shape.embedding, shape.normalise_embeddings, alone};
-}
-
 // theta phi(a) [d, K] of every action.
-std::vector<Packed<float>> action_matrices(const Model& model) {
-  const PolicyShape& shape = model.shape;
-  Layout layout;
-  BilinearForm<float> form(shape.actions, shape.feature, shape.basis, shape.action_embedding, layout);
-  std::vector<float> parameters(layout.total());
-  for (const TensorInfo& tensor : layout.tensors())
-    std::ranges::copy(values(model, tensor.name), parameters.begin() + tensor.offset);
-  std::vector<int> actions(shape.actions);
-  std::iota(actions.begin(), actions.end(), 0);
-  Parallel alone(1);
-  form.use_actions(alone, actions, parameters.data());
+std::vector<Packed<float>> action_matrices(const PolicyShape& shape, const BilinearForm<float>& form,
+                                           const float* parameters) {
   std::vector<Packed<float>> matrices(shape.actions);
-  for (const int a : actions)
-    matrices[a].pack(Op::kAsIs, shape.feature, shape.basis, form.action_matrix(a, parameters.data()), shape.basis);
+  std::vector<float> matrix(size_t(shape.feature) * shape.basis);
+  for (int a = 0; a < shape.actions; ++a) {
+    form.make_action_matrix(a, parameters, matrix.data());
+    matrices[a].pack(Op::kAsIs, shape.feature, shape.basis, matrix.data(), shape.basis);
+  }
   return matrices;
 }
+
+std::vector<float> biases(const PolicyShape& shape, const float* values) { return {values, values + shape.actions}; }
 
 double log_sum_exp(const std::vector<float>& scores) {
   if (scores.empty()) return -std::numeric_limits<double>::infinity();
@@ -54,35 +37,39 @@ double log_sum_exp(const std::vector<float>& scores) {
 
 }  // namespace
 
-size_t EmbeddingLoss::step_bytes(const PolicyShape& shape) {
+size_t SynPoEmbeddingLoss::step_bytes(const PolicyShape& shape) {
   return sizeof(float) * (size_t(shape.actions) * shape.basis + kKinds * (shape.embedding + 1) + 1) + 2 * sizeof(int);
 }
 
-EmbeddingLoss::Kind::Kind(const Model& model, const std::string& name, const std::vector<bool>& is_new)
-    : at(find(model, "embedding." + name).offset), size(find(model, "embedding." + name).size),
-      table(table_of(model.shape, int(is_new.size()))),
-      f("f_" + name, model.policy->parameters(), model.parameters.data()) {
+SynPoEmbeddingLoss::Kind::Kind(const EmbeddingTable<float>& table, const Recogniser<float>& f, const float* parameters,
+                               const std::vector<bool>& is_new)
+    : table(table), f(f.perceptron().place(), parameters) {
   for (int row = 0; row < int(is_new.size()); ++row)
     if (is_new[row]) rows.push_back(row);
   place.assign(is_new.size(), fresh());
   for (int i = 0; i < fresh(); ++i) place[rows[i]] = i;
 }
 
-EmbeddingLoss::EmbeddingLoss(const Model& model, const std::vector<bool>& new_env, const std::vector<bool>& new_task)
-    : shape_(model.shape), kind_{{model, "env", new_env}, {model, "task", new_task}},
-      coefficient_{{"alpha", model.policy->parameters(), model.parameters.data()},
-                   {"beta", model.policy->parameters(), model.parameters.data()}},
-      theta_(action_matrices(model)), bias_{values(model, "policy.bias"), values(model, "reward.bias")} {
-  use_embeddings(model.parameters.data());
+SynPoEmbeddingLoss::SynPoEmbeddingLoss(const SynPo<float>& policy, const float* parameters,
+                                       const std::vector<bool>& new_env, const std::vector<bool>& new_task)
+    : shape_(policy.shape()), kind_{{*policy.env_, *policy.f_env_, parameters, new_env},
+                                    {policy.task_, policy.f_task_, parameters, new_task}},
+      coefficient_{{policy.coefficient_[kPolicy].place(), parameters},
+                   {policy.coefficient_[kReward].place(), parameters}},
+      theta_(action_matrices(shape_, policy.form_, parameters)), bias_{
+                                                                     biases(shape_, parameters + policy.bias_[kPolicy]),
+                                                                     biases(shape_,
+                                                                            parameters + policy.bias_[kReward])} {
+  use_embeddings(parameters);
 }
 
-void EmbeddingLoss::add(Parallel& parallel, const std::vector<Steps>& episodes) {
+void SynPoEmbeddingLoss::add(Parallel& parallel, const std::vector<Steps>& episodes) {
   const size_t first = episodes_.size();
   episodes_.resize(first + episodes.size());
   parallel.run(int(episodes.size()), [&](int i, int) { take_in(episodes[i], episodes_[first + i]); });
 }
 
-void EmbeddingLoss::take_in(const Steps& steps, Episode& episode) const {
+void SynPoEmbeddingLoss::take_in(const Steps& steps, Episode& episode) const {
   const int n = steps.size, d = shape_.feature, actions = shape_.actions, basis = shape_.basis;
   episode.key[kEnv] = steps.pair.env;
   episode.key[kTask] = steps.pair.task;
@@ -101,7 +88,7 @@ void EmbeddingLoss::take_in(const Steps& steps, Episode& episode) const {
   }
 }
 
-void EmbeddingLoss::rate_old(Which which, Episode& episode) const {
+void SynPoEmbeddingLoss::rate_old(Which which, Episode& episode) const {
   const Kind& kind = kind_[which];
   const int truth = episode.key[which];
   for (int i = 0; i < episode.size; ++i) {
@@ -119,10 +106,10 @@ void EmbeddingLoss::rate_old(Which which, Episode& episode) const {
   }
 }
 
-void EmbeddingLoss::use_embeddings(const float* parameters) {
+void SynPoEmbeddingLoss::use_embeddings(const float* parameters) {
   const int width = shape_.embedding;
   for (Kind& kind : kind_) {
-    kind.table.use(parameters + kind.at);
+    kind.table.use(parameters);
     std::vector<float> fresh;
     for (const int row : kind.rows) fresh.insert(fresh.end(), kind.table.row(row), kind.table.row(row) + width);
     kind.packed.pack(Op::kTransposed, width, kind.fresh(), fresh.data(), width);
@@ -130,7 +117,7 @@ void EmbeddingLoss::use_embeddings(const float* parameters) {
 }
 
 // Returns the number of steps.
-size_t EmbeddingLoss::count_draws(const std::vector<size_t>& drawn) {
+size_t SynPoEmbeddingLoss::count_draws(const std::vector<size_t>& drawn) {
   drawn_ = drawn;
   std::ranges::sort(drawn_);
   times_.clear();
@@ -152,7 +139,7 @@ size_t EmbeddingLoss::count_draws(const std::vector<size_t>& drawn) {
   return steps;
 }
 
-void EmbeddingLoss::compose(Parallel& parallel) {
+void SynPoEmbeddingLoss::compose(Parallel& parallel) {
   const int pairs = by_pair_.count(), in = kKinds * shape_.embedding, basis = shape_.basis, hidden = shape_.hidden;
   float* input = input_.grow(size_t(pairs) * in);
   for (const int key : by_pair_.keys) {
@@ -175,7 +162,7 @@ void EmbeddingLoss::compose(Parallel& parallel) {
   });
 }
 
-void EmbeddingLoss::compose_backward(Parallel& parallel) {
+void SynPoEmbeddingLoss::compose_backward(Parallel& parallel) {
   const int pairs = by_pair_.count(), in = kKinds * shape_.embedding, basis = shape_.basis, hidden = shape_.hidden;
   float* dinput = dinput_.grow(size_t(pairs) * in);
   parallel.run(shard_count(pairs, kRows), [&](int shard, int) {
@@ -194,7 +181,7 @@ void EmbeddingLoss::compose_backward(Parallel& parallel) {
 }
 
 // Policy and reward, each step with weight `each`.
-void EmbeddingLoss::head_losses(const Episode& episode, float each, double reward_weight, int pair, Part& part) {
+void SynPoEmbeddingLoss::head_losses(const Episode& episode, float each, double reward_weight, int pair, Part& part) {
   const int actions = shape_.actions, basis = shape_.basis;
   const size_t at = size_t(pair) * basis;
   const float *alpha = coefficients_[kPolicy].data() + at, *beta = coefficients_[kReward].data() + at;
@@ -218,7 +205,7 @@ void EmbeddingLoss::head_losses(const Episode& episode, float each, double rewar
 }
 
 // Disentanglement: the old ones are one class more, whose score is the logarithm of their sum.
-void EmbeddingLoss::recognise(Which which, const Episode& episode, float each, double weight, Part& part) const {
+void SynPoEmbeddingLoss::recognise(Which which, const Episode& episode, float each, double weight, Part& part) const {
   const Kind& kind = kind_[which];
   const int n = episode.size, fresh = kind.fresh(), classes = fresh + 1, width = shape_.embedding;
   part.kind[which] += each * episode.apart[which];
@@ -237,7 +224,7 @@ void EmbeddingLoss::recognise(Which which, const Episode& episode, float each, d
 }
 
 // The losses, without weights, and the gradient.
-Losses EmbeddingLoss::reduce(const std::vector<Part>& parts, const float* parameters, float* gradient) {
+Losses SynPoEmbeddingLoss::reduce(const std::vector<Part>& parts, const float* parameters, float* gradient) {
   Losses losses;
   for (const Part& part : parts) {
     losses.policy += part.head[kPolicy];
@@ -252,14 +239,14 @@ Losses EmbeddingLoss::reduce(const std::vector<Part>& parts, const float* parame
   for (Kind& kind : kind_) {
     for (int row = 0; row < kind.table.count(); ++row)
       if (kind.is_old(row)) std::fill_n(kind.table.gradient_row(row), shape_.embedding, 0.0f);
-    std::fill_n(gradient + kind.at, kind.size, 0.0f);
-    kind.table.backward(parameters + kind.at, gradient + kind.at);
+    std::fill_n(gradient + kind.table.offset(), kind.table.size(), 0.0f);
+    kind.table.backward(parameters, gradient);
   }
   return losses;
 }
 
-Losses EmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights,
-                           const float* parameters, float* gradient) {
+Losses SynPoEmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights,
+                                const float* parameters, float* gradient) {
   const size_t steps = count_draws(drawn);
   use_embeddings(parameters);
   compose(parallel);

@@ -1,4 +1,4 @@
-// The losses of Algorithm 1 as a function of new embeddings alone, where all else of SynPo stays as it is (adapt.h).
+// The losses of Algorithm 1 as a function of new embeddings alone, where all else of SynPo stays as it is.
 //
 // What never changes is computed once for every demonstrated step: x(s, a) of all actions, f_env(x) and f_task(x) at
 // the expert's action, and log sum exp of what the old environments, and tasks, score. An update is left with
@@ -8,52 +8,41 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/gemm.h"
 #include "nn/layers/frozen_perceptron.h"
-#include "play/model.h"
+#include "policy/embedding_loss.h"
 #include "policy/head/embedding_table.h"
 #include "policy/head/groups.h"
+#include "policy/method/synpo.h"
 
 namespace synpo {
 
-class EmbeddingLoss {
+class SynPoEmbeddingLoss : public EmbeddingLoss {
  public:
-  // Whether there is such a loss for models of this kind.
-  static bool fits(const Model& model) { return model.method == "synpo"; }
   // What is kept of a step, in bytes.
   static size_t step_bytes(const PolicyShape& shape);
 
-  // Rows of the embeddings that are marked as new are those to be learned; everything else of the model is taken as it
-  // is now.
-  EmbeddingLoss(const Model& model, const std::vector<bool>& new_env, const std::vector<bool>& new_task);
+  // Rows of the embeddings that are marked as new are those to be learned; everything else is taken as it is in
+  // `parameters`.
+  SynPoEmbeddingLoss(const SynPo<float>& policy, const float* parameters, const std::vector<bool>& new_env,
+                     const std::vector<bool>& new_task);
 
-  // An episode's steps: psi [size, d], the others [size].
-  struct Steps {
-    EnvTask pair;
-    int size;
-    const float* psi;
-    const int* label;
-    const int* taken;
-    const float* reward;
-  };
-  // Takes episodes in, numbered as they come.
-  void add(Parallel& parallel, const std::vector<Steps>& episodes);
-  size_t episodes() const { return episodes_.size(); }
-
-  // Means over the steps of the episodes drawn, each as often as it is. In `gradient`, laid out as the model's
-  // parameters, both tables of embeddings are overwritten, old rows with zero; the rest is left as it was. Bits do not
-  // depend on the number of threads.
+  void add(Parallel& parallel, const std::vector<Steps>& episodes) override;
+  size_t episodes() const override { return episodes_.size(); }
   Losses step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights, const float* parameters,
-              float* gradient);
+              float* gradient) override;
 
  private:
-  enum Head { kPolicy, kReward, kHeads };
+  using Head = SynPo<float>::Head;
+  static constexpr Head kPolicy = Head::kPolicy, kReward = Head::kReward, kHeads = Head::kHeads;
   enum Which { kEnv, kTask, kKinds };
   // Environments, or tasks.
   struct Kind {
-    Kind(const Model& model, const std::string& name, const std::vector<bool>& is_new);
+    Kind(const EmbeddingTable<float>& table, const Recogniser<float>& f, const float* parameters,
+         const std::vector<bool>& is_new);
     int fresh() const { return int(rows.size()); }
     bool is_old(int row) const { return place[row] == fresh(); }
-    size_t at, size;         // of the table among the model's parameters
     std::vector<int> rows;   // the new ones
     std::vector<int> place;  // of a row among them; behind the last for the old ones, which stand together as one class
     EmbeddingTable<float> table;
