@@ -1,45 +1,17 @@
 // synpo-render: matrices, curves, mazes, kitchens, views, episodes, embeddings and policies as PNG pictures.
 #include "render/render.h"
 
-#include <algorithm>
+#include <numeric>
 
 #include "base/error.h"
-#include "draw/grid/agent_view.h"
-#include "draw/grid/maze_picture.h"
-#include "draw/kitchen/kitchen_agent_view.h"
-#include "draw/kitchen/kitchen_picture.h"
+#include "draw/episode/agent_view.h"
 #include "draw/terminal/terminal.h"
+#include "draw/worlds/faces.h"
 #include "world/grid/maze.h"
-#include "world/grid/task.h"
-#include "world/kitchen/plan.h"
 
 using namespace synpo;
 
 namespace {
-
-constexpr char kWorldHelp[] = "gridworld, gridworld:DIR for the map files of a folder, or kitchen";
-
-template <class Plan>
-const Plan& find_plan(const std::vector<Plan>& plans, const std::string& name, const char* kind) {
-  const auto found = std::find_if(plans.begin(), plans.end(), [&](const Plan& plan) { return plan.name == name; });
-  if (found == plans.end()) fail(Exit::kUsage, "no ", kind, " ", quoted(name), " in this world");
-  return *found;
-}
-
-template <class Plan>
-std::vector<Plan> choose_plans(const std::vector<Plan>& plans, const std::vector<std::string>& names,
-                               const char* kind) {
-  if (names.empty()) return plans;
-  std::vector<Plan> chosen;
-  for (const std::string& name : names) chosen.push_back(find_plan(plans, name, kind));
-  return chosen;
-}
-
-int find_task(const std::string& name) {
-  for (size_t i = 0; i < grid_tasks().size(); ++i)
-    if (grid_tasks()[i].name() == name) return int(i);
-  fail(Exit::kUsage, "no task ", quoted(name), ": expected two of R B G O P, such as R-B");
-}
 
 int map(int argc, char** argv) {
   MapStyle style;
@@ -55,71 +27,46 @@ int map(int argc, char** argv) {
   const auto names = options.parse(argc, argv, 0, 1000);
   picture.check(options, {});
   style.scale = picture.scale;
-  const auto finish_with = [&](const auto& plans, const auto& draw, const auto& terminal) {
-    Output output = picture.open();
-    if (picture.ansi)
-      finish(output, terminal(plans, style, environment_colour(), terminal_width(output.is_stdout() ? 1 : -1)));
-    else
-      finish(output, draw(plans, style, Font(picture.font)));
-  };
-  if (draws_kitchens(world))
-    finish_with(choose_plans(builtin_kitchens(), names, "kitchen"), draw_kitchens, terminal_kitchens);
+  const std::unique_ptr<const WorldFace> face = open_face(world);
+  std::vector<int> envs(names.empty() ? size_t(face->world().envs()) : 0);
+  std::iota(envs.begin(), envs.end(), 0);
+  for (const std::string& name : names) envs.push_back(find_env(*face, name));
+  Output output = picture.open();
+  if (picture.ansi)
+    finish(output, face->plans_text(envs, style, environment_colour(), terminal_width(output.is_stdout() ? 1 : -1)));
   else
-    finish_with(choose_plans(open_mazes(world), names, "maze"), draw_maps, terminal_maps);
+    finish(output, face->draw_plans(envs, style, Font(picture.font)));
   return 0;
 }
 
-struct ViewOptions {
-  std::string world = "gridworld", env, task, title;
-  int64_t seed = 0, episode = 0, steps = 0, window = 1;
-  bool history = false;
-  Random random(uint64_t pair) const { return {uint64_t(seed), Purpose::kEpisodeStart, pair, uint64_t(episode)}; }
-};
-
-Canvas draw_maze_view(const ViewOptions& wanted, double scale, const Font& font) {
-  const std::vector<Maze> mazes = open_mazes(wanted.world);
-  const Maze& maze = wanted.env.empty() ? mazes.front() : find_plan(mazes, wanted.env, "maze");
-  const int task = wanted.task.empty() ? 0 : find_task(wanted.task);
-  const uint64_t pair = uint64_t(&maze - mazes.data()) * grid_tasks().size() + uint64_t(task);
-  const ViewStyle style = {int(wanted.window), wanted.history, wanted.title, scale};
-  return draw_agent_view(expert_moment(maze, grid_tasks()[size_t(task)], wanted.random(pair), wanted.steps), style,
-                         font);
-}
-
-Canvas draw_kitchen_view(const ViewOptions& wanted, double scale, const Font& font) {
-  const KitchenSet world;
-  const EnvTask pair = {wanted.env.empty() ? 0 : world.env_index(wanted.env),
-                        wanted.task.empty() ? 0 : world.task_index(wanted.task)};
-  if (pair.env < 0) fail(Exit::kUsage, "no kitchen ", quoted(wanted.env), " in this world");
-  if (pair.task < 0)
-    fail(Exit::kUsage, "no task ", quoted(wanted.task), ": expected an object and a receptacle, such as Mug-Sink");
-  return draw_kitchen_view(kitchen_moment(world, pair, wanted.random(world.pair_number(pair)), wanted.steps),
-                           {wanted.history, wanted.title, scale}, font);
-}
-
 int view(int argc, char** argv) {
-  ViewOptions wanted;
+  ViewStyle style;
   PictureOptions picture;
+  std::string world = "gridworld", env, task;
+  int64_t seed = 0, episode = 0, steps = 0, window = 1;
   Options options("synpo-render view", "[OPTION]...",
                   "Draws a moment of an expert's episode and what the agent sees of it.");
-  options.text('w', "world", "WORLD", kWorldHelp, wanted.world)
-      .text('e', "env", "NAME", "maze or kitchen; none: the world's first", wanted.env)
-      .text('t', "task", "NAME", "task; none: the world's first, R-B or Container-Fridge", wanted.task)
-      .integer('s', "seed", "N", "seed of the start", wanted.seed, 0, INT64_MAX)
-      .integer(0, "episode", "N", "number of the episode under this seed", wanted.episode, 0, UINT32_MAX)
-      .integer(0, "steps", "N", "steps of the expert from the start", wanted.steps, 0, kStepLimit)
-      .integer(0, "window", "R", "radius of what the agent sees of a maze; 0: blind", wanted.window, 0, kGridSide - 1)
-      .flag(0, "history", "the last four pictures of the network's input too", wanted.history)
-      .call(0, "title", "TEXT", "title instead of environment, task and step", drawn(wanted.title));
+  options.text('w', "world", "WORLD", kWorldHelp, world)
+      .text('e', "env", "NAME", "maze or kitchen; none: the world's first", env)
+      .text('t', "task", "NAME", "task; none: the world's first, R-B or Container-Fridge", task)
+      .integer('s', "seed", "N", "seed of the start", seed, 0, INT64_MAX)
+      .integer(0, "episode", "N", "number of the episode under this seed", episode, 0, UINT32_MAX)
+      .integer(0, "steps", "N", "steps of the expert from the start", steps, 0, kStepLimit)
+      .integer(0, "window", "R", "radius of what the agent sees of a maze; 0: blind", window, 0, kGridSide - 1)
+      .flag(0, "history", "the last four pictures of the network's input too", style.history)
+      .call(0, "title", "TEXT", "title instead of environment, task and step", drawn(style.title));
   picture.add_to(options);
   options.parse(argc, argv);
-  const bool kitchen = draws_kitchens(wanted.world);
-  if (kitchen && options.given("window"))
-    fail(Exit::kUsage, "--window is for mazes, but the world is ", quoted(wanted.world));
+  style.scale = picture.scale;
+  const std::unique_ptr<const WorldFace> face = open_face(world);
+  if (!face->kind().has_window && options.given("window"))
+    fail(Exit::kUsage, "--window is for ", environments_with(&FaceKind::has_window), ", but the world is ",
+         quoted(world));
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   const Font font(picture.font);
-  finish(output,
-         kitchen ? draw_kitchen_view(wanted, picture.scale, font) : draw_maze_view(wanted, picture.scale, font));
+  const EnvTask pair = {env.empty() ? 0 : find_env(*face, env), task.empty() ? 0 : find_task(*face, task)};
+  const Random random(uint64_t(seed), Purpose::kEpisodeStart, face->world().pair_number(pair), uint64_t(episode));
+  finish(output, draw_agent_view(*face, expert_film(face->world(), pair, random, steps, int(window)), style, font));
   return 0;
 }
 
@@ -140,13 +87,18 @@ int body(int argc, char** argv) {
 
 }  // namespace
 
-bool draws_kitchens(const std::string& world) {
-  if (world == "kitchen") return true;
-  if (world == "gridworld" || world.starts_with("gridworld:")) return false;
-  if (world.starts_with("kitchen:"))
-    fail(Exit::kUsage, "cannot draw the world ", quoted(world),
-         ": of the kitchens, only those of 'kitchen' have plans");
-  fail(Exit::kUsage, "unknown world ", quoted(world), ", expected gridworld, gridworld:DIR or kitchen");
+int find_env(const WorldFace& face, const std::string& name, const char* world) {
+  const int found = face.world().env_index(name);
+  if (found < 0) fail(Exit::kUsage, "no ", face.kind().environment, " ", quoted(name), " in ", world);
+  return found;
+}
+
+int find_task(const WorldFace& face, const std::string& name) {
+  const int found = face.world().task_index(name);
+  const char* hint = face.kind().task_hint;
+  if (found < 0)
+    fail(Exit::kUsage, "no task ", quoted(name), hint ? ": expected " : " in this world", hint ? hint : "");
+  return found;
 }
 
 int main(int argc, char** argv) { return run_tool("synpo-render", argc, argv, body); }

@@ -1,29 +1,11 @@
-// Colours for print of mazes and kitchens. What the agent sees has its own: kPalette of mazes, KitchenPalette of
-// kitchens.
+// Colours for print of plans, whatever their world. What the agent sees has its own.
 #pragma once
-#include <array>
-#include <cstdint>
-
 #include "base/rgb.h"
-#include "world/grid/task.h"
-#include "world/kitchen/geometry/palette.h"
 
 namespace synpo {
 
 constexpr Rgb kPaperWall = {62, 70, 82}, kPaperFloor = {250, 249, 245}, kPaperGrid = {226, 224, 217},
               kPaperAgent = {20, 20, 24};
-extern const std::array<Rgb, kTreasures> kPaperTreasures;
-extern const char* const kTreasureNames[kTreasures];
-
-constexpr Rgb kPaperCounter = {166, 172, 181}, kPaperTable = {208, 172, 128}, kPaperEdge = {104, 110, 119};
-
-Rgb paper_colour(const Colour& colour);
-Rgb receptacle_colour(int receptacle);
-Rgb object_colour(int object);
-// Of a cell of floor, the two of its tiles.
-std::array<Rgb, 2> paper_floor(uint64_t kitchen_hash);
-
-// Of a character of a plan.
-Rgb kitchen_cell_colour(char c, Rgb floor);
+constexpr Rgb kPaperWrong = {200, 0, 0};  // around what ended an episode and should not have
 
 }  // namespace synpo

@@ -1,19 +1,19 @@
-// What a policy would do wherever the agent stood.
+// What a policy would do in states of one's choice, such as wherever the agent stood.
 #pragma once
-#include <array>
 #include <vector>
 
 #include "policy/policy.h"
-#include "world/grid/grid_set.h"
+#include "world/world.h"
 
 namespace synpo {
 
-using ActionRates = std::array<double, kGridActions>;
+// By action, in sum 1.
+using ActionRates = std::vector<double>;
 
-// softmax(scores) of the policy, or the best action where scores are values (Policy::temperature()), with the agent on
-// each free cell of the maze, in the order of Maze::free_cells; all else as in `state`. Its history is `pictures_each`
-// times, 1 to kHistory, the picture of the agent there. The policy is prepared with `pair` as its pair number 0.
-std::vector<ActionRates> probe_cells(Policy<float>& policy, const GridSet& world, EnvTask pair, const GridState& state,
-                                     int window, int pictures_each);
+// In each of the states: softmax(scores) of the policy, or the best action where scores are values
+// (Policy::temperature()). Its history is `remembered` times, 1 to kHistory, the state itself. The policy is prepared
+// with `pair` as its pair number 0.
+std::vector<ActionRates> probe_states(Policy<float>& policy, const World& world, EnvTask pair,
+                                      const std::vector<WorldState>& states, int window, int remembered);
 
 }  // namespace synpo

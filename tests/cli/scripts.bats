@@ -5,7 +5,7 @@ tree() {
     mkdir -p lib tools tests/unit/draw tests/unit/world
     for file in lib/base/error.h lib/base/files/io.h lib/world/world.h lib/world/grid/maze.h lib/world/kitchen/rules.h lib/format/tsv.h lib/nn/gemm.h \
         lib/nn/layers/dense.h lib/policy/policy.h lib/policy/head/groups.h lib/play/model.h lib/learn/steps.h lib/stats/interval.h lib/stats/matrix/runs.h \
-        lib/draw/colour.h lib/draw/canvas/canvas.h lib/draw/plot/axes.h lib/draw/episode/path.h lib/draw/grid/maze_picture.h lib/draw/terminal/terminal.h \
+        lib/draw/colour.h lib/draw/canvas/canvas.h lib/draw/plot/axes.h lib/draw/face/path.h lib/draw/episode/time_bar.h lib/draw/grid/maze_picture.h lib/draw/terminal/terminal.h lib/draw/worlds/faces.h \
         tools/synpo-eval.cc; do
         mkdir -p "$(dirname $file)"
         cp "$ROOT/$file" $file
@@ -61,9 +61,17 @@ lib/draw/canvas/canvas.h "play/model.h"
 lib/draw/canvas/canvas.h "draw/plot/axes.h"
 lib/draw/plot/axes.h "draw/grid/maze_picture.h"
 lib/draw/plot/axes.h <opencv2/core.hpp>
-lib/draw/episode/path.h "draw/plot/axes.h"
+lib/draw/face/path.h "draw/plot/axes.h"
+lib/draw/face/path.h "draw/episode/time_bar.h"
+lib/draw/face/path.h "draw/grid/maze_picture.h"
+lib/draw/face/path.h "draw/worlds/faces.h"
+lib/draw/episode/time_bar.h "draw/plot/axes.h"
+lib/draw/episode/time_bar.h "draw/grid/maze_picture.h"
 lib/draw/grid/maze_picture.h "draw/kitchen/kitchen_picture.h"
 lib/draw/grid/maze_picture.h "draw/plot/axes.h"
+lib/draw/grid/maze_picture.h "draw/episode/time_bar.h"
+lib/draw/grid/maze_picture.h "draw/worlds/faces.h"
+lib/draw/worlds/faces.h "draw/episode/time_bar.h"
 lib/draw/terminal/terminal.h "draw/canvas/canvas.h"
 lib/draw/terminal/terminal.h "draw/grid/maze_picture.h"
 lib/world/grid/maze.h "../format/tsv.h"

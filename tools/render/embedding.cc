@@ -3,11 +3,10 @@
 #include <cmath>
 
 #include "base/error.h"
-#include "draw/grid/maze_picture.h"
 #include "draw/plot/embedding_picture.h"
+#include "draw/worlds/faces.h"
 #include "play/model.h"
 #include "render/render.h"
-#include "world/grid/grid_set.h"
 
 using namespace synpo;
 
@@ -56,10 +55,10 @@ int embedding(int argc, char** argv) {
 
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
-  const std::unique_ptr<World> restored = world_of(checkpoint);
+  const std::shared_ptr<const World> restored = world_of(checkpoint);
   const World& world = *restored;
+  const std::unique_ptr<const WorldFace> face = face_of(restored);
   const Model model = load_model(checkpoint, world);
-  const auto* grid = dynamic_cast<const GridSet*>(restored.get());
 
   std::vector<Row> envs, tasks;
   const auto trained = [&](int EnvTask::*side, int index) {
@@ -68,13 +67,8 @@ int embedding(int argc, char** argv) {
   };
   for (int i = 0; i < world.envs(); ++i)
     if (trained(&EnvTask::env, i)) envs.push_back({i, world.environments()[i].name});
-  for (int i = 0; i < world.task_count(); ++i)
+  for (const int i : face->task_order())
     if (trained(&EnvTask::task, i)) tasks.push_back({i, world.task_names()[i]});
-  const auto treasures = [&](const Row& row) {
-    return std::pair(grid->tasks()[row.index].first, grid->tasks()[row.index].second);
-  };
-  if (grid)
-    std::sort(tasks.begin(), tasks.end(), [&](const Row& a, const Row& b) { return treasures(a) < treasures(b); });
 
   std::vector<Embeddings> panels;
   std::string of;
@@ -85,18 +79,17 @@ int embedding(int argc, char** argv) {
   if (const TensorInfo* place = model.policy->embeddings(PairSide::kTask)) {
     panels.push_back(read_embeddings(model, place, "tasks", tasks));
     of += concat(count_text(tasks.size(), world.task_count()), " tasks");
-    if (grid)
-      for (const Row& row : tasks)
-        panels.back().marks.push_back(
-            [task = grid->tasks()[row.index]](Canvas& canvas, const Box& box) { draw_task(canvas, box, task); });
+    for (const Row& row : tasks)
+      if (const Sign sign = face->task_sign(row.index)) panels.back().marks.push_back(sign);
   }
   if (panels.empty()) fail(Exit::kData, "method ", quoted(model.method), " has no embeddings");
   const char* what = kind == "pca"        ? "principal components"
                      : metric == "cosine" ? "cosine distance"
                                           : "Euclidean distance";
+  const std::string marked = face->task_sign_words();
   style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", of, ", size ",
                          model.shape.embedding, "; ", model.method, ", ", model.updates, " updates",
-                         grid ? "; a task's mark: left its first treasure, right its second" : "");
+                         marked.empty() ? "" : "; a task's mark: " + marked);
   const Font font(picture.font);
   if (kind == "pca")
     finish(output, draw_embedding_map(panels, style, font));

@@ -1,6 +1,6 @@
 // synpo-render policy: what a checkpoint would do in every cell of a maze, against the planner.
 #include "base/error.h"
-#include "draw/grid/policy_picture.h"
+#include "draw/worlds/faces.h"
 #include "play/cell_policy.h"
 #include "play/model.h"
 #include "render/render.h"
@@ -8,20 +8,6 @@
 using namespace synpo;
 
 namespace {
-
-EnvTask find_pair(const GridSet& world, const std::string& env, const std::string& task) {
-  const EnvTask pair = {env.empty() ? 0 : world.env_index(env), world.task_index(task)};
-  if (pair.env < 0) fail(Exit::kUsage, "no maze ", quoted(env), " in the checkpoint's world");
-  if (pair.task < 0) fail(Exit::kUsage, "no task ", quoted(task), ": expected two of R B G O P, such as R-B");
-  return pair;
-}
-
-// The same treasures when the first one of the task has been picked.
-GridState second_stage(const Task& task, GridState state) {
-  state.now.treasures[task.first] = kPicked;
-  state.picked = 1;
-  return state;
-}
 
 // What the agent remembers in a cell.
 std::string history_text(int pictures) {
@@ -35,12 +21,12 @@ std::string history_text(int pictures) {
 int policy(int argc, char** argv) {
   PolicyPictureStyle style;
   PictureOptions picture;
-  std::string env, task_name = "R-B";
+  std::string env, task = "R-B";
   int64_t seed = 0, episode = 0, stage = 0, pictures = 0;
   Options options("synpo-render policy", "[OPTION]... [CHECKPOINT]",
                   "Draws a policy's best action in every free cell of a maze, and where the planner disagrees.");
   options.text('e', "env", "NAME", "maze; none: the first of the checkpoint's world", env)
-      .text('t', "task", "NAME", "task", task_name)
+      .text('t', "task", "NAME", "task", task)
       .integer('s', "seed", "N", "seed of the treasures", seed, 0, INT64_MAX)
       .integer(0, "episode", "N", "number of the episode under this seed", episode, 0, UINT32_MAX)
       .integer(0, "stage", "N", "1: on the way to the first treasure; 2: to the second; 0: both side by side", stage, 0,
@@ -54,29 +40,29 @@ int policy(int argc, char** argv) {
 
   Output output(picture.output, Output::Kind::kBinary, picture.force);
   const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
-  const std::unique_ptr<World> restored = world_of(checkpoint);
-  const GridSet& world = as_gridworld(*restored, "a picture of a policy");
-  Model model = load_model(checkpoint, world);
-  const EnvTask pair = find_pair(world, env, task_name);
-  const Maze& maze = world.maze(pair.env);
-  const Task& task = world.tasks()[pair.task];
+  const std::shared_ptr<const World> world = world_of(checkpoint);
+  const std::unique_ptr<const WorldFace> face = face_of(world);
+  if (!face->kind().has_policy_picture)
+    fail(Exit::kUsage, "a picture of a policy needs ", worlds_with(&FaceKind::has_policy_picture), ", found world ",
+         quoted(world->name()));
+  Model model = load_model(checkpoint, *world);
+  const EnvTask pair = {env.empty() ? 0 : find_env(*face, env, "the checkpoint's world"), find_task(*face, task)};
 
   Parallel parallel(1);
   model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), {{pair.env, pair.task}});
-  const GridState start = to_grid_state(episode_start(world, pair, uint64_t(seed), Purpose::kEpisodeStart, episode));
+  const WorldState start = episode_start(*world, pair, uint64_t(seed), Purpose::kEpisodeStart, episode);
   std::vector<PolicyStage> stages;
-  for (const int number : {1, 2})
-    if (stage == 0 || stage == number) {
-      const GridState state = number == 1 ? start : second_stage(task, start);
-      // No episode begins in stage 2: a policy has never seen it with an empty history.
-      const int remembered = pictures > 0 ? int(pictures) : number == 1 ? 1 : kHistory;
-      stages.push_back(compare_to_planner(maze, world.planner(pair.env), task, state,
-                                          probe_cells(*model.policy, world, pair, state, model.window, remembered)));
-      style.caption += concat(style.caption.empty() ? "" : ". ", "Stage ", number, ": ", history_text(remembered));
-    }
-  if (style.title.empty())
-    style.title = concat(maze.name, ", task ", task.name(), model.is_seen(pair) ? " (seen)" : " (unseen)");
+  int number = 0;
+  for (PolicyStage& each : face->policy_stages(pair, start)) {
+    if (++number != stage && stage != 0) continue;
+    const int remembered = pictures > 0 ? int(pictures) : each.remembered;
+    each.choices = compare_to_expert(*world, pair, each.states,
+                                     probe_states(*model.policy, *world, pair, each.states, model.window, remembered));
+    stages.push_back(each);
+    style.caption += concat(style.caption.empty() ? "" : ". ", "Stage ", number, ": ", history_text(remembered));
+  }
+  if (style.title.empty()) style.title = face->name(pair) + (model.is_seen(pair) ? " (seen)" : " (unseen)");
   style.caption = concat(model.method, ", ", model.updates, " updates. ", style.caption);
-  finish(output, draw_policy(maze, task, stages, style, Font(picture.font)));
+  finish(output, face->draw_policy(pair, stages, style, Font(picture.font)));
   return 0;
 }

@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/files/io.h"
 #include "draw/canvas/canvas.h"
+#include "draw/face/world_face.h"
 
 // What every command takes: where the picture goes, its size and its font; and --ansi, where the command can draw with
 // characters.
@@ -64,8 +65,11 @@ inline auto drawn(std::string& title) {
   return [&title](const std::string& given) { title = drawable(given); };
 }
 
-// Whether the world of -w is the kitchens; else it is mazes. Throws kUsage for one that cannot be drawn.
-bool draws_kitchens(const std::string& world);
+constexpr char kWorldHelp[] = "gridworld, gridworld:DIR for the map files of a folder, or kitchen";
+// Positions of an environment and a task by their names. Throw kUsage for one that is not there; `world` is what the
+// message calls the world.
+int find_env(const synpo::WorldFace& face, const std::string& name, const char* world = "this world");
+int find_task(const synpo::WorldFace& face, const std::string& name);
 
 int heatmap(int argc, char** argv);
 int curves(int argc, char** argv);

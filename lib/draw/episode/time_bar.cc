@@ -6,7 +6,6 @@
 #include "base/error.h"
 #include "draw/canvas/ticks.h"
 #include "draw/colour.h"
-#include "draw/episode/path.h"
 
 namespace synpo {
 namespace {

@@ -6,8 +6,13 @@
 #include "base/error.h"
 #include "draw/canvas/heading.h"
 #include "draw/colour.h"
+#include "draw/paper.h"
 
 namespace synpo {
+
+const std::array<Rgb, kTreasures> kPaperTreasures = {
+    {{200, 38, 45}, {32, 90, 190}, {34, 134, 66}, {243, 146, 20}, {122, 56, 168}}};
+const char* const kTreasureNames[kTreasures] = {"red", "blue", "green", "orange", "purple"};
 
 void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze) {
   const int line = std::max(1, cell / 16);

@@ -1,17 +1,20 @@
 // Mazes on paper: one, or many as a grid with their names (Figure 9), and the signs for agent and treasures on them.
 #pragma once
-#include <string>
+#include <array>
 #include <vector>
 
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/key.h"
-#include "draw/episode/plan_grid.h"
+#include "draw/face/plan_grid.h"
 #include "draw/map_style.h"
-#include "draw/paper.h"
 #include "world/grid/maze.h"
 #include "world/grid/task.h"
 
 namespace synpo {
+
+// For print; what the agent sees has kPalette.
+extern const std::array<Rgb, kTreasures> kPaperTreasures;
+extern const char* const kTreasureNames[kTreasures];
 
 // Where the cells of a maze lie that is drawn there.
 inline PlanGrid maze_grid(int x, int y, int cell) { return {x, y, cell, kGridSide}; }

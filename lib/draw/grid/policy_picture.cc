@@ -8,6 +8,7 @@
 #include "draw/colour.h"
 #include "draw/grid/maze_picture.h"
 #include "stats/report/text_table.h"
+#include "world/grid/gridworld.h"
 
 namespace synpo {
 namespace {
@@ -71,33 +72,37 @@ void draw_treasure_letter(Canvas& canvas, const Box& box, int treasure) {
               ink_on(kPaperTreasures[treasure]), Across::kCentre, Upright::kMiddle);
 }
 
+// Where the agent stands means nothing.
+GridState state_of(const PolicyStage& stage) { return to_grid_state(stage.states.front()); }
+
 void draw_stage(Canvas& canvas, const PlanGrid& place, const Maze& maze, const PolicyStage& stage) {
   draw_maze(canvas, place.x, place.y, place.cell, maze);
   const int line = std::max(1, place.cell / 16);
-  for (const PolicyCell& cell : stage.cells)
-    if (!cell.agrees()) {
-      const Box box = place.box(cell.cell);
-      canvas.fill({box.x + line, box.y + line, box.width - line, box.height - line}, kWrongGround);
-    }
+  const auto for_cells = [&](auto draw) {
+    for (size_t i = 0; i < stage.states.size(); ++i)
+      draw(place.box(to_grid_state(stage.states[i]).now.agent), stage.choices[i]);
+  };
   const auto on_treasures = [&](auto draw) {
     for (int i = 0; i < kTreasures; ++i)
-      if (const uint8_t at = stage.state.now.treasures[i]; at != kPicked) draw(canvas, place.box(at), i);
+      if (const uint8_t at = state_of(stage).now.treasures[i]; at != kPicked) draw(canvas, place.box(at), i);
   };
+  for_cells([&](const Box& box, const PolicyChoice& choice) {
+    if (!choice.agrees()) canvas.fill({box.x + line, box.y + line, box.width - line, box.height - line}, kWrongGround);
+  });
   on_treasures(draw_treasure_frame);
-  for (const PolicyCell& cell : stage.cells) {
-    const Box box = place.box(cell.cell);
-    for (int action = 0; action < kGridActions && !cell.agrees(); ++action)
-      if (cell.optimal[action]) draw_optimal(canvas, box, action);
-    draw_action(canvas, box, cell.action, action_colour(cell.agrees(), cell.probability));
-  }
+  for_cells([&](const Box& box, const PolicyChoice& choice) {
+    for (int action = 0; action < kGridActions && !choice.agrees(); ++action)
+      if (choice.optimal[size_t(action)]) draw_optimal(canvas, box, action);
+    draw_action(canvas, box, choice.action, action_colour(choice.agrees(), choice.probability));
+  });
   on_treasures(draw_treasure_letter);
 }
 
 std::string stage_text(const Task& task, const PolicyStage& stage) {
-  const int cells = int(stage.cells.size()), agreeing = stage.agreeing();
-  const char* target = kTreasureNames[next_target(task, stage.state)];
-  return concat("stage ", stage.state.picked + 1, ", to ", target, ": optimal in ", agreeing, " of ", cells, " cells (",
-                percent(double(agreeing) / cells), " %)");
+  const int cells = int(stage.states.size()), agreeing = stage.agreeing();
+  const GridState state = state_of(stage);
+  return concat("stage ", state.picked + 1, ", to ", kTreasureNames[next_target(task, state)], ": optimal in ",
+                agreeing, " of ", cells, " cells (", percent(double(agreeing) / cells), " %)");
 }
 
 Key make_key(const std::vector<PolicyStage>& stages, int width, double scale, const Font& font) {
@@ -111,7 +116,7 @@ Key make_key(const std::vector<PolicyStage>& stages, int width, double scale, co
     return signs;
   };
   const bool all_agree = std::all_of(stages.begin(), stages.end(),
-                                     [](const PolicyStage& s) { return s.agreeing() == int(s.cells.size()); });
+                                     [](const PolicyStage& s) { return s.agreeing() == int(s.states.size()); });
   std::vector<KeyEntry> entries = {{arrows(true), "best action is optimal; probability 0.4, 0.7, 1"}};
   if (!all_agree) entries.push_back({arrows(false), "not optimal"});
   entries.push_back(
@@ -126,29 +131,8 @@ Key make_key(const std::vector<PolicyStage>& stages, int width, double scale, co
 
 }  // namespace
 
-int PolicyStage::agreeing() const {
-  return int(std::count_if(cells.begin(), cells.end(), [](const PolicyCell& cell) { return cell.agrees(); }));
-}
-
-PolicyStage compare_to_planner(const Maze& maze, const Planner& planner, const Task& task, const GridState& state,
-                               const std::vector<std::array<double, kGridActions>>& probabilities) {
-  PolicyStage stage{state, {}};
-  for (size_t i = 0; i < maze.free_cells.size(); ++i) {
-    GridState here = state;
-    here.now.agent = maze.free_cells[i];
-    const auto& p = probabilities[i];
-    const auto best = std::max_element(p.begin(), p.end());
-    const std::array<int, kGridActions> q = planner.q_cents(task, here);
-    PolicyCell cell{here.now.agent, int(best - p.begin()), *best, {}};
-    for (int action = 0; action < kGridActions; ++action)
-      cell.optimal[action] = q[action] == *std::max_element(q.begin(), q.end());
-    stage.cells.push_back(cell);
-  }
-  return stage;
-}
-
-Canvas draw_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages,
-                   const PolicyPictureStyle& style, const Font& font) {
+Canvas draw_maze_policy(const Maze& maze, const Task& task, const std::vector<PolicyStage>& stages,
+                        const PolicyPictureStyle& style, const Font& font) {
   const Pixels px{style.scale};
   const int margin = px(kMarginPt), cell = px(kCellPt), side = kGridSide * cell, between = px(kBetweenPt),
             title = px(kPanelTitlePt);

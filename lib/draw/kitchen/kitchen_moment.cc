@@ -5,7 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "draw/colour.h"
+#include "draw/kitchen/kitchen_picture.h"
+#include "world/kitchen/geometry/make_tables.h"
 
 namespace synpo {
 namespace {
@@ -47,11 +48,6 @@ class Reach {
 };
 
 }  // namespace
-
-Kitchen kitchen_of(const KitchenSet& world, int env) {
-  const Environment& environment = world.environments()[size_t(env)];
-  return parse_kitchen(environment.name, environment.content, environment.name);
-}
 
 void draw_sight(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& eye) {
   constexpr int kFine = 3;  // samples a pixel, each way
@@ -101,13 +97,6 @@ void draw_objects(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen,
   if (frame.objects[size_t(wanted)] >= 0) draw_wanted(canvas, box_of(wanted), wanted);
   for (int i = 0; i < kKitchenObjects; ++i)
     if (frame.objects[size_t(i)] >= 0) draw_object(canvas, box_of(i), i);
-}
-
-void draw_moment(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenFrame& frame, int wanted) {
-  draw_kitchen(canvas, place, kitchen, frame.doors, Lettering::kNames);
-  draw_sight(canvas, place, kitchen, frame.eye);
-  draw_objects(canvas, place, kitchen, frame, wanted);
-  draw_looker(canvas, agent_box(place, kitchen, frame.eye), frame.eye.heading);
 }
 
 void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame& frame) {

@@ -8,6 +8,8 @@
 #include "draw/canvas/heading.h"
 #include "draw/canvas/stroke.h"
 #include "draw/colour.h"
+#include "draw/kitchen/kitchen_colours.h"
+#include "draw/paper.h"
 
 namespace synpo {
 namespace {

@@ -5,9 +5,8 @@
 
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/key.h"
-#include "draw/episode/plan_grid.h"
+#include "draw/face/plan_grid.h"
 #include "draw/map_style.h"
-#include "draw/paper.h"
 #include "world/kitchen/geometry/kitchen.h"
 
 namespace synpo {

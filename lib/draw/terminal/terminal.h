@@ -1,12 +1,9 @@
-// Success matrices, mazes and kitchens on a terminal, as coloured blocks.
+// What a terminal can show, and success matrices on it as coloured blocks.
 #pragma once
 #include <string>
 
 #include "draw/colour.h"
-#include "draw/map_style.h"
 #include "stats/matrix/heat_table.h"
-#include "world/grid/maze.h"
-#include "world/kitchen/geometry/kitchen.h"
 
 namespace synpo {
 
@@ -29,12 +26,5 @@ constexpr char kPlainCode[] = "\033[0m";
 // coloured cells are wider than `width` columns (0: any width is well) they become smaller and lose their numbers. Ends
 // with the means of the kinds.
 std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width);
-
-// Mazes with their names, two columns a cell; walls are '#' without colour. A row has as many mazes as `width` columns
-// hold (0: 80), at most `style.columns` where that is not 0.
-std::string terminal_maps(const std::vector<Maze>& mazes, const MapStyle& style, TerminalColour colour, int width);
-// The same of kitchens, in the characters of their plans; floor is blank.
-std::string terminal_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style, TerminalColour colour,
-                              int width);
 
 }  // namespace synpo

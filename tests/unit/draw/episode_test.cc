@@ -1,4 +1,4 @@
-#include "draw/grid/episode_picture.h"
+#include "draw/episode/episode_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -7,12 +7,12 @@
 #include "base/error.h"
 #include "draw/canvas/video.h"
 #include "draw/colour.h"
-#include "draw/episode/path.h"
-#include "draw/grid/terminal_path.h"
+#include "draw/face/path.h"
+#include "draw/grid/grid_face.h"
+#include "draw/grid/maze_picture.h"
 #include "draw/paper.h"
 #include "helpers/mazes.h"
 #include "helpers/temporary.h"
-#include "world/grid/planner.h"
 
 namespace synpo {
 namespace {
@@ -22,7 +22,10 @@ const Font& font() {
   return shared;
 }
 
-const Task kRedBlue = {0, 1};
+const GridFace& face() {
+  static const GridFace shared(std::make_shared<const GridSet>(std::vector{open_maze()}));
+  return shared;
+}
 
 // Agent at (1, 1), R at (1, 3), B at (1, 4), the others in the last row of floor.
 GridState start() {
@@ -33,37 +36,37 @@ GridState start() {
 }
 
 Film film(const std::vector<uint8_t>& actions, const GridState& from = start()) {
-  static const Maze maze = open_maze();
-  return play_film(maze, kRedBlue, from, actions, 1);
+  return play_film(face().world(), {0, face().world().task_index("R-B")}, to_world_state(from), actions, 1);
 }
 
 const std::vector<uint8_t> kSuccess = {kRight, kRight, kPick, kRight, kPick};
 
 TEST(Film, SaysWhatCameOfAnEpisode) {
-  EXPECT_EQ(describe(film(kSuccess)), "success after 5 steps (the fewest), reward 11.95; R at step 3, B at step 5");
-  EXPECT_EQ(describe(film({kUp, kPick, kRight, kRight, kPick, kRight, kPick})),
+  EXPECT_EQ(face().describe(film(kSuccess)),
+            "success after 5 steps (the fewest), reward 11.95; R at step 3, B at step 5");
+  EXPECT_EQ(face().describe(film({kUp, kPick, kRight, kRight, kPick, kRight, kPick})),
             "success after 7 steps (5 would do), reward 11.92; R at step 5, B at step 7; 1 step into walls; 1 pick "
             "where nothing lies");
-  EXPECT_EQ(describe(film({kRight, kRight, kRight, kPick})),
+  EXPECT_EQ(face().describe(film({kRight, kRight, kRight, kPick})),
             "wrong pick after 4 steps (success takes 5), reward \u221210.04; B at step 4");
-  EXPECT_EQ(describe(film(std::vector<uint8_t>(300, kUp))),
+  EXPECT_EQ(face().describe(film(std::vector<uint8_t>(300, kUp))),
             "timeout after 300 steps (success takes 5), reward \u22126.00; no treasure picked; 300 steps into walls");
-  EXPECT_EQ(outcome(film({kRight})), "unfinished");
+  EXPECT_EQ(face().outcome(film({kRight})), "unfinished");
 }
 
 TEST(Film, KeyMomentsKeepFirstPicksAndLast) {
   std::vector<uint8_t> actions(100, kUp);
   for (const uint8_t action : kSuccess) actions.push_back(action);
   const Film long_one = film(actions);
-  EXPECT_EQ(key_moments(long_one, 0), (std::vector<int>{}));
-  EXPECT_EQ(key_moments(long_one, 1), (std::vector<int>{0}));
-  EXPECT_EQ(key_moments(long_one, 2), (std::vector<int>{0, 104}));
-  EXPECT_EQ(key_moments(long_one, 3), (std::vector<int>{0, 102, 104}));
-  EXPECT_EQ(key_moments(long_one, 5), (std::vector<int>{0, 34, 68, 102, 104}));
-  EXPECT_EQ(key_moments(film(kSuccess), 12), (std::vector<int>{0, 1, 2, 3, 4}));
-  EXPECT_EQ(key_moments(film({kRight}), 12), (std::vector<int>{0}));
+  EXPECT_EQ(face().key_moments(long_one, 0), (std::vector<int>{}));
+  EXPECT_EQ(face().key_moments(long_one, 1), (std::vector<int>{0}));
+  EXPECT_EQ(face().key_moments(long_one, 2), (std::vector<int>{0, 104}));
+  EXPECT_EQ(face().key_moments(long_one, 3), (std::vector<int>{0, 102, 104}));
+  EXPECT_EQ(face().key_moments(long_one, 5), (std::vector<int>{0, 34, 68, 102, 104}));
+  EXPECT_EQ(face().key_moments(film(kSuccess), 12), (std::vector<int>{0, 1, 2, 3, 4}));
+  EXPECT_EQ(face().key_moments(film({kRight}), 12), (std::vector<int>{0}));
   for (int count = 3; count <= 106; ++count) {
-    const std::vector<int> moments = key_moments(long_one, count);
+    const std::vector<int> moments = face().key_moments(long_one, count);
     const std::set<int> distinct(moments.begin(), moments.end());
     EXPECT_EQ(distinct.size(), size_t(std::min(count, 105))) << count;
     EXPECT_TRUE(distinct.contains(0) && distinct.contains(102) && distinct.contains(104)) << count;
@@ -99,9 +102,9 @@ TEST(EpisodePicture, NothingIsClippedAndBytesAreTheSame) {
           scale == 1
               ? "A title that is much too long for the picture, so that it has to be broken into several lines of text"
               : "";
-      const Canvas canvas = draw_episode(each, style, font());
+      const Canvas canvas = draw_episode(face(), each, style, font());
       EXPECT_EQ(canvas.clipped(), 0) << scale;
-      EXPECT_EQ(canvas.png(), draw_episode(each, style, font()).png());
+      EXPECT_EQ(canvas.png(), draw_episode(face(), each, style, font()).png());
     }
 }
 
@@ -111,9 +114,10 @@ TEST(EpisodePicture, TheStripMakesItHigher) {
   some.strip = 3;
   more.strip = 13;
   const Film waits = film(std::vector<uint8_t>(20, kUp));
-  const int without = draw_episode(waits, none, font()).height(), one_row = draw_episode(waits, some, font()).height();
+  const int without = draw_episode(face(), waits, none, font()).height(),
+            one_row = draw_episode(face(), waits, some, font()).height();
   EXPECT_GT(one_row, without + 100);
-  EXPECT_GT(draw_episode(waits, more, font()).height(), one_row + 200);
+  EXPECT_GT(draw_episode(face(), waits, more, font()).height(), one_row + 200);
 }
 
 TEST(EpisodePicture, FramesAreOfOneSizeWithEvenSides) {
@@ -121,10 +125,10 @@ TEST(EpisodePicture, FramesAreOfOneSizeWithEvenSides) {
   for (const double scale : {0.7, 1.0, 1.3}) {
     EpisodeStyle style;
     style.scale = scale;
-    const Canvas first = draw_episode_frame(success, 0, style, font());
+    const Canvas first = draw_episode_frame(face(), success, 0, style, font());
     EXPECT_EQ(first.width() % 2 + first.height() % 2, 0);
     for (int moment = 0; moment <= success.steps(); ++moment) {
-      const Canvas frame = draw_episode_frame(success, moment, style, font());
+      const Canvas frame = draw_episode_frame(face(), success, moment, style, font());
       EXPECT_EQ(frame.width(), first.width());
       EXPECT_EQ(frame.height(), first.height());
       EXPECT_EQ(frame.clipped(), 0);
@@ -135,7 +139,7 @@ TEST(EpisodePicture, FramesAreOfOneSizeWithEvenSides) {
 TEST(Video, IsWholeOrNotThere) {
   const TemporaryFolder folder;
   const Film success = film(kSuccess);
-  const Canvas frame = draw_episode_frame(success, 0, {}, font());
+  const Canvas frame = draw_episode_frame(face(), success, 0, {}, font());
   {
     Video video(folder.file("a.avi"), 5, frame.width(), frame.height());
     video.add(frame);
@@ -155,16 +159,16 @@ TEST(Video, IsWholeOrNotThere) {
 }
 
 TEST(TerminalPath, WithoutColour) {
-  const std::string text = terminal_path(film(kSuccess), TerminalColour::kNone);
+  const std::string text = face().film_text(film(kSuccess), TerminalColour::kNone);
   const std::string wall(16 * 4, '#');
   EXPECT_TRUE(text.starts_with("open, task R-B\n" + wall + "\n####   0   1R  2B  4" + std::string(40, ' ') + "####\n"))
       << text;
-  EXPECT_TRUE(text.ends_with(wall + "\n" + describe(film(kSuccess)) + "\n")) << text;
+  EXPECT_TRUE(text.ends_with(wall + "\n" + face().describe(film(kSuccess)) + "\n")) << text;
   EXPECT_EQ(text.find('\033'), std::string::npos);
 }
 
 TEST(TerminalPath, BlocksOfColour) {
-  const std::string text = terminal_path(film(kSuccess), TerminalColour::kTrue);
+  const std::string text = face().film_text(film(kSuccess), TerminalColour::kTrue);
   EXPECT_NE(text.find(ground_code(time_colour(0.2), TerminalColour::kTrue) + "  1" + kPlainCode), std::string::npos);
   EXPECT_NE(text.find(ground_code(kPaperTreasures[1], TerminalColour::kTrue) + "B 4" + kPlainCode), std::string::npos);
 }

@@ -9,10 +9,13 @@
 #include "base/error.h"
 #include "draw/canvas/canvas.h"
 #include "draw/colour.h"
-#include "draw/grid/agent_view.h"
+#include "draw/episode/agent_view.h"
+#include "draw/grid/grid_face.h"
 #include "draw/grid/maze_picture.h"
+#include "draw/paper.h"
 #include "draw/plot/heatmap.h"
 #include "format/matrix.h"
+#include "world/grid/view.h"
 
 namespace synpo {
 namespace {
@@ -282,16 +285,13 @@ TEST(Maps, WallsAreDark) {
 }
 
 TEST(View, ShowsThePaletteOfTheAgentsPicture) {
-  const Maze& maze = builtin_mazes()[0];
-  const Task task = grid_tasks()[0];
+  const GridFace face(std::make_shared<const GridSet>(builtin_mazes()));
   const Random start(1, Purpose::kEpisodeStart, 0, 0);
   for (const int radius : {0, 1, 15})
     for (const bool history : {false, true}) {
       ViewStyle style;
-      style.radius = radius;
       style.history = history;
-      const ViewMoment moment = expert_moment(maze, task, start, 3);
-      const Canvas canvas = draw_agent_view(moment, style, font());
+      const Canvas canvas = draw_agent_view(face, expert_film(face.world(), {0, 0}, start, 3, radius), style, font());
       EXPECT_EQ(canvas.clipped(), 0);
       int wall = 0;
       for (int y = 0; y < canvas.height(); ++y)
@@ -301,18 +301,22 @@ TEST(View, ShowsThePaletteOfTheAgentsPicture) {
 }
 
 TEST(View, ExpertMomentsFollowThePlanner) {
-  const Maze& maze = builtin_mazes()[4];
-  const Task task = grid_tasks()[7];
+  const GridSet world(builtin_mazes());
+  const EnvTask pair = {4, 7};
   const Random start(3, Purpose::kEpisodeStart, 7, 2);
-  const ViewMoment first = expert_moment(maze, task, start, 0);
-  EXPECT_EQ(first.history.count, 1);
-  EXPECT_EQ(first.state.steps, 0);
-  EXPECT_GE(first.expert_action, 0);
+  const auto film = [&](int steps) { return expert_film(world, pair, start, steps, 1); };
+  const Film first = film(0);
+  EXPECT_EQ(first.states.size(), 1u);
+  EXPECT_EQ(first.states[0].steps, 0);
+  EXPECT_FALSE(first.terminated());
   int length = 0;
-  while (expert_moment(maze, task, start, length).expert_action >= 0) ++length;
-  EXPECT_EQ(expert_moment(maze, task, start, length).state.picked, 2);
-  EXPECT_EQ(expert_moment(maze, task, start, length - 1).expert_action, kPick);
-  EXPECT_THROW(expert_moment(maze, task, start, length + 1), Error);
+  while (!film(length).terminated()) ++length;
+  const Film whole = film(length);
+  EXPECT_EQ(to_grid_state(whole.states.back()).picked, 2);
+  EXPECT_EQ(whole.actions.back(), kPick);
+  EXPECT_THROW(film(length + 1), Error);
+  EXPECT_EQ(expert_steps(world, pair, first.states[0]), length);
+  EXPECT_EQ(world.planner(pair.env).steps_to_success(world.tasks()[7], to_grid_state(first.states[0])), length);
 }
 
 }  // namespace

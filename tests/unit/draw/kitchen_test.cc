@@ -5,11 +5,14 @@
 
 #include "base/error.h"
 #include "draw/colour.h"
-#include "draw/episode/path.h"
-#include "draw/kitchen/kitchen_agent_view.h"
-#include "draw/kitchen/kitchen_episode_picture.h"
+#include "draw/episode/agent_view.h"
+#include "draw/episode/episode_picture.h"
+#include "draw/face/path.h"
+#include "draw/kitchen/kitchen_colours.h"
+#include "draw/kitchen/kitchen_face.h"
 #include "draw/kitchen/kitchen_moment.h"
 #include "draw/kitchen/kitchen_picture.h"
+#include "draw/paper.h"
 #include "draw/terminal/terminal.h"
 #include "helpers/kitchen_rooms.h"
 #include "world/kitchen/plan.h"
@@ -22,10 +25,12 @@ const Font& font() {
   return shared;
 }
 
-const KitchenSet& small_world() {
-  static const KitchenSet world({small_kitchen()});
-  return world;
+const KitchenFace& face() {
+  static const KitchenFace shared(std::make_shared<const KitchenSet>(std::vector{small_kitchen()}));
+  return shared;
 }
+
+const KitchenSet& small_world() { return dynamic_cast<const KitchenSet&>(face().world()); }
 
 EnvTask pair_of(const char* task) { return {0, small_world().task_index(task)}; }
 
@@ -36,16 +41,16 @@ WorldState start() {
 }
 
 // What the expert of one task does, while the episode's task is another.
-KitchenFilm play(const char* task, const char* played) {
+Film play(const char* task, const char* played) {
   WorldState state = start();
   std::vector<uint8_t> actions;
   do actions.push_back(uint8_t(small_world().expert(pair_of(played), state)));
   while (!small_world().step(pair_of(task), state, actions.back()).ended());
-  return play_kitchen_film(small_world(), pair_of(task), start(), actions);
+  return play_film(small_world(), pair_of(task), start(), actions, 0);
 }
 
-KitchenFilm play(const char* task, const std::vector<uint8_t>& actions) {
-  return play_kitchen_film(small_world(), pair_of(task), start(), actions);
+Film play(const char* task, const std::vector<uint8_t>& actions) {
+  return play_film(small_world(), pair_of(task), start(), actions, 0);
 }
 
 constexpr int kCell = 20;
@@ -111,12 +116,13 @@ TEST(KitchenPicture, AsTextTheyAreTheirPlans) {
   const Kitchen kitchen = small_kitchen();
   std::string expected = "small\n";
   for (const char c : kitchen.text) expected += c == '\n' ? "\n" : std::string(2, c == '.' ? ' ' : c);
-  EXPECT_EQ(terminal_kitchens({kitchen}, {}, TerminalColour::kNone, 80), expected);
-  const std::string coloured = terminal_kitchens({kitchen}, {}, TerminalColour::kTrue, 80);
+  EXPECT_EQ(face().plans_text({0}, {}, TerminalColour::kNone, 80), expected);
+  const std::string coloured = face().plans_text({0}, {}, TerminalColour::kTrue, 80);
   EXPECT_NE(coloured.find(ground_code(receptacle_colour(kFridge), TerminalColour::kTrue) + "FFFF" + kPlainCode),
             std::string::npos);
   EXPECT_EQ(coloured.find('#'), std::string::npos);
-  const std::string both = terminal_kitchens({builtin_kitchens()[15], kitchen}, {}, TerminalColour::kNone, 80);
+  const std::string both = KitchenFace(std::make_shared<const KitchenSet>(std::vector{builtin_kitchens()[15], kitchen}))
+                               .plans_text({0, 1}, {}, TerminalColour::kNone, 80);
   EXPECT_TRUE(both.starts_with("FloorPlan25" + std::string(9, ' ') + "small\n" + std::string(18, '#') + "  " +
                                std::string(20, '#') + "\n"))
       << both;
@@ -149,7 +155,7 @@ TEST(KitchenMoment, ObjectsAndAgentLieWhereTheyAre) {
   const KitchenFrame frame = small_world().frame(0, start());
   const PlanGrid place = {0, 0, kCell, kitchen.columns};
   Canvas canvas(kitchen.columns * kCell, kitchen.rows * kCell, font());
-  draw_moment(canvas, place, kitchen, frame, 0);
+  face().draw_moment(canvas, place, play_film(small_world(), {0, 0}, start(), {}, 0), 0);
   for (int i = 0; i < kKitchenObjects; ++i) {
     const int cell = frame.objects[size_t(i)];
     const Point centre = place.centre(plan_cell(kitchen, cell / kSceneStride, cell % kSceneStride));
@@ -177,61 +183,67 @@ TEST(KitchenView, NothingIsClippedAndBytesAreTheSame) {
   for (const double scale : {0.25, 1.0})
     for (const bool history : {false, true})
       for (const int64_t steps : {0, 2}) {
-        const KitchenMoment moment =
-            kitchen_moment(small_world(), pair_of("Mug-Fridge"), Random(1, Purpose::kEpisodeStart), steps);
-        const Canvas canvas = draw_kitchen_view(moment, {history, "", scale}, font());
+        const Film film =
+            expert_film(small_world(), pair_of("Mug-Fridge"), Random(1, Purpose::kEpisodeStart), steps, 0);
+        const Canvas canvas = draw_agent_view(face(), film, {history, "", scale}, font());
         EXPECT_EQ(canvas.clipped(), 0) << scale << history << steps;
-        EXPECT_EQ(canvas.png(), draw_kitchen_view(moment, {history, "", scale}, font()).png());
+        EXPECT_EQ(canvas.png(), draw_agent_view(face(), film, {history, "", scale}, font()).png());
       }
 }
 
 TEST(KitchenView, TheExpertsEpisodeEnds) {
   const EnvTask pair = pair_of("Mug-Fridge");
+  const auto film = [&](int64_t steps) {
+    return expert_film(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps, 0);
+  };
   int64_t steps = 0;
-  while (kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps).expert_action >= 0) ++steps;
-  EXPECT_EQ(draw_kitchen_view(kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps), {}, font())
-                .clipped(),
-            0);
-  EXPECT_THROW(kitchen_moment(small_world(), pair, Random(1, Purpose::kEpisodeStart), steps + 1), Error);
+  while (!film(steps).terminated()) ++steps;
+  EXPECT_EQ(draw_agent_view(face(), film(steps), {}, font()).clipped(), 0);
+  EXPECT_THROW(film(steps + 1), Error);
+  const WorldState from = film(0).states[0];
+  EXPECT_EQ(expert_steps(small_world(), pair, from), steps);
+  EXPECT_EQ(small_world().planner(0).steps_to_success(kitchen_task(pair.task), unpack(from)), steps);
 }
 
 TEST(KitchenFilm, KnowsWhatWasOpenedTakenAndFilled) {
-  const KitchenFilm film = play("Mug-Fridge", "Mug-Fridge");
+  const Film film = play("Mug-Fridge", "Mug-Fridge");
   std::vector<std::string> deeds;
   for (int i = 0; i < film.steps(); ++i)
-    if (event_of(film, i).deed != Deed::kNone) deeds.push_back(action_words(film, i));
+    if (face().event(film, i).deed != Deed::kNone) deeds.push_back(face().action_words(film, i));
   std::sort(deeds.begin(), deeds.end());
   EXPECT_EQ(deeds, (std::vector<std::string>{"open Fridge", "pick Mug", "put in Fridge"}));
-  EXPECT_TRUE(describe(film).starts_with(concat("success after ", film.steps(), " steps (the fewest), reward 10.")))
-      << describe(film);
-  EXPECT_TRUE(describe(film).ends_with(concat("Fridge filled at step ", film.steps()))) << describe(film);
+  EXPECT_TRUE(
+      face().describe(film).starts_with(concat("success after ", film.steps(), " steps (the fewest), reward 10.")))
+      << face().describe(film);
+  EXPECT_TRUE(face().describe(film).ends_with(concat("Fridge filled at step ", film.steps()))) << face().describe(film);
 }
 
 TEST(KitchenFilm, SaysWhatCameOfAnEpisode) {
-  EXPECT_EQ(outcome(play("Mug-Fridge", "Tomato-Fridge")), "wrong object");
-  EXPECT_EQ(outcome(play("Mug-Fridge", "Mug-Sink")), "wrong receptacle");
-  const KitchenFilm turns = play("Mug-Fridge", std::vector<uint8_t>(300, kRotateLeft));
-  EXPECT_TRUE(describe(turns).starts_with("timeout after 300 steps (success takes ")) << describe(turns);
-  EXPECT_TRUE(describe(turns).ends_with("reward \u22123.00; nothing picked up")) << describe(turns);
-  const KitchenFilm up = play("Mug-Fridge", {kLookUp, kLookUp, kLookUp});
-  EXPECT_TRUE(describe(up).starts_with("unfinished after 3 steps (")) << describe(up);
-  EXPECT_TRUE(describe(up).ends_with("reward \u22120.05; nothing picked up; 2 steps without effect")) << describe(up);
-  EXPECT_EQ(action_words(up, 1), "LookUp");
+  EXPECT_EQ(face().outcome(play("Mug-Fridge", "Tomato-Fridge")), "wrong object");
+  EXPECT_EQ(face().outcome(play("Mug-Fridge", "Mug-Sink")), "wrong receptacle");
+  const Film turns = play("Mug-Fridge", std::vector<uint8_t>(300, kRotateLeft));
+  EXPECT_TRUE(face().describe(turns).starts_with("timeout after 300 steps (success takes ")) << face().describe(turns);
+  EXPECT_TRUE(face().describe(turns).ends_with("reward \u22123.00; nothing picked up")) << face().describe(turns);
+  const Film up = play("Mug-Fridge", {kLookUp, kLookUp, kLookUp});
+  EXPECT_TRUE(face().describe(up).starts_with("unfinished after 3 steps (")) << face().describe(up);
+  EXPECT_TRUE(face().describe(up).ends_with("reward \u22120.05; nothing picked up; 2 steps without effect"))
+      << face().describe(up);
+  EXPECT_EQ(face().action_words(up, 1), "LookUp");
 }
 
 TEST(KitchenFilm, KeyMomentsKeepFirstDeedsAndLast) {
   std::vector<uint8_t> actions(100, kRotateLeft);
-  const KitchenFilm direct = play("Mug-Fridge", "Mug-Fridge");
+  const Film direct = play("Mug-Fridge", "Mug-Fridge");
   actions.insert(actions.end(), direct.actions.begin(), direct.actions.end());
-  const KitchenFilm film = play("Mug-Fridge", actions);
-  EXPECT_EQ(outcome(film), "success");
+  const Film film = play("Mug-Fridge", actions);
+  EXPECT_EQ(face().outcome(film), "success");
   for (int count = 4; count <= film.steps() + 1; ++count) {
-    const std::vector<int> moments = key_moments(film, count);
+    const std::vector<int> moments = face().key_moments(film, count);
     const std::set<int> distinct(moments.begin(), moments.end());
     EXPECT_EQ(distinct.size(), size_t(std::min(count, film.steps())));
     EXPECT_TRUE(std::is_sorted(moments.begin(), moments.end()));
     for (int i = 0; i < film.steps(); ++i) {
-      const bool key = i == 0 || i == film.steps() - 1 || event_of(film, i).deed != Deed::kNone;
+      const bool key = i == 0 || i == film.steps() - 1 || face().event(film, i).deed != Deed::kNone;
       EXPECT_TRUE(!key || distinct.contains(i)) << i;
     }
   }
@@ -249,7 +261,7 @@ TEST(KitchenPath, RunsOverAPlanOfAnyWidth) {
 TEST(KitchenEpisode, NothingIsClippedAndBytesAreTheSame) {
   std::vector<uint8_t> to_and_fro;
   for (int i = 0; i < 60; ++i) to_and_fro.insert(to_and_fro.end(), {kMoveAhead, kRotateLeft, kRotateLeft});
-  for (const KitchenFilm& film :
+  for (const Film& film :
        {play("Mug-Fridge", "Mug-Fridge"), play("Mug-Fridge", "Tomato-Fridge"), play("Mug-Fridge", "Mug-Microwave"),
         play("Mug-Sink", std::vector<uint8_t>(300, kRotateLeft)), play("Mug-Sink", to_and_fro),
         play("Mug-Sink", {kLookUp})})
@@ -260,9 +272,9 @@ TEST(KitchenEpisode, NothingIsClippedAndBytesAreTheSame) {
           scale == 1
               ? "A title that is much too long for the picture, so that it has to be broken into several lines of text"
               : "";
-      const Canvas canvas = draw_kitchen_episode(film, style, font());
-      EXPECT_EQ(canvas.clipped(), 0) << scale << describe(film);
-      EXPECT_EQ(canvas.png(), draw_kitchen_episode(film, style, font()).png());
+      const Canvas canvas = draw_episode(face(), film, style, font());
+      EXPECT_EQ(canvas.clipped(), 0) << scale << face().describe(film);
+      EXPECT_EQ(canvas.png(), draw_episode(face(), film, style, font()).png());
     }
 }
 
@@ -271,23 +283,23 @@ TEST(KitchenEpisode, TheStripMakesItHigher) {
   none.strip = 0;
   some.strip = 3;
   more.strip = 13;
-  const KitchenFilm film = play("Mug-Sink", std::vector<uint8_t>(20, kRotateLeft));
-  const int without = draw_kitchen_episode(film, none, font()).height(),
-            one_row = draw_kitchen_episode(film, some, font()).height();
+  const Film film = play("Mug-Sink", std::vector<uint8_t>(20, kRotateLeft));
+  const int without = draw_episode(face(), film, none, font()).height(),
+            one_row = draw_episode(face(), film, some, font()).height();
   EXPECT_GT(one_row, without + 100);
-  EXPECT_GT(draw_kitchen_episode(film, more, font()).height(), one_row + 200);
+  EXPECT_GT(draw_episode(face(), film, more, font()).height(), one_row + 200);
 }
 
 TEST(KitchenEpisode, FramesAreOfOneSizeWithEvenSides) {
-  const KitchenFilm film = play("Mug-Microwave", "Mug-Microwave");
+  const Film film = play("Mug-Microwave", "Mug-Microwave");
   for (const double scale : {0.7, 1.0}) {
     EpisodeStyle style;
     style.scale = scale;
-    const Canvas first = draw_kitchen_frame(film, 0, style, font());
+    const Canvas first = draw_episode_frame(face(), film, 0, style, font());
     EXPECT_EQ(first.width() % 2 + first.height() % 2, 0);
     std::set<std::string> different;
     for (int moment = 0; moment <= film.steps(); ++moment) {
-      const Canvas frame = draw_kitchen_frame(film, moment, style, font());
+      const Canvas frame = draw_episode_frame(face(), film, moment, style, font());
       EXPECT_EQ(frame.width(), first.width());
       EXPECT_EQ(frame.height(), first.height());
       EXPECT_EQ(frame.clipped(), 0);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "draw/grid/grid_face.h"
 #include "draw/grid/maze_picture.h"
 #include "draw/plot/embedding_picture.h"
 #include "draw/plot/labels.h"
@@ -17,60 +18,70 @@ const Font& font() {
   return shared;
 }
 
-const Task kRedBlue = {0, 1};
+const GridFace& face() {
+  static const GridFace shared(std::make_shared<const GridSet>(std::vector{open_maze()}));
+  return shared;
+}
+
+EnvTask red_blue() { return {0, face().world().task_index("R-B")}; }
 
 GridState treasures() {
   GridState state;
+  state.now.agent = cell(7, 7);
   state.now.treasures = {cell(1, 3), cell(3, 1), cell(14, 2), cell(14, 3), cell(14, 4)};
   return state;
 }
 
 // UP everywhere, with this probability.
-PolicyStage always_up(const Maze& maze, const GridState& state, double probability) {
+PolicyStage always_up(size_t number, double probability) {
+  PolicyStage stage = face().policy_stages(red_blue(), to_world_state(treasures()))[number];
   const double rest = (1 - probability) / 4;
-  return compare_to_planner(
-      maze, Planner(maze), kRedBlue, state,
-      std::vector(maze.free_cells.size(), std::array<double, kGridActions>{probability, rest, rest, rest, rest}));
+  stage.choices =
+      compare_to_expert(face().world(), red_blue(), stage.states,
+                        std::vector(stage.states.size(), std::vector<double>{probability, rest, rest, rest, rest}));
+  return stage;
 }
 
-const PolicyCell& at(const PolicyStage& stage, uint8_t cell) {
-  return *std::find_if(stage.cells.begin(), stage.cells.end(),
-                       [&](const PolicyCell& each) { return each.cell == cell; });
+const PolicyChoice& at(const PolicyStage& stage, uint8_t cell) {
+  const auto found = std::find_if(stage.states.begin(), stage.states.end(),
+                                  [&](const WorldState& state) { return to_grid_state(state).now.agent == cell; });
+  return stage.choices[size_t(found - stage.states.begin())];
 }
 
 TEST(PolicyStage, OptimalActionsByHand) {
-  const Maze maze = open_maze();
-  const PolicyStage stage = always_up(maze, treasures(), 0.6);
-  using Optimal = std::array<bool, kGridActions>;
+  const PolicyStage stage = always_up(0, 0.6);
+  using Optimal = std::vector<bool>;
   EXPECT_EQ(at(stage, cell(1, 3)).optimal, (Optimal{false, false, false, false, true}));
   EXPECT_EQ(at(stage, cell(2, 3)).optimal, (Optimal{true, false, false, false, false}));
   EXPECT_EQ(at(stage, cell(2, 4)).optimal, (Optimal{true, false, true, false, false}));
   EXPECT_EQ(at(stage, cell(3, 1)).optimal, (Optimal{true, false, false, true, false})) << "B is not yet to be picked";
   EXPECT_EQ(at(stage, cell(5, 5)).action, kUp);
   EXPECT_EQ(at(stage, cell(5, 5)).probability, 0.6);
-  EXPECT_EQ(stage.cells.size(), 14u * 14);
+  EXPECT_EQ(stage.choices.size(), 14u * 14);
   EXPECT_EQ(stage.agreeing(), 13 * 14) << "all rows but that of R";
 }
 
 TEST(PolicyStage, TheSecondStageLeadsToTheSecondTreasure) {
-  const Maze maze = open_maze();
-  GridState state = treasures();
-  state.now.treasures[0] = kPicked;
-  state.picked = 1;
-  EXPECT_EQ(always_up(maze, state, 0.6).agreeing(), 11 * 14);
+  EXPECT_EQ(always_up(1, 0.6).agreeing(), 11 * 14);
+  const auto stages = face().policy_stages(red_blue(), to_world_state(treasures()));
+  ASSERT_EQ(stages.size(), 2u);
+  EXPECT_EQ(stages[0].remembered, 1);
+  EXPECT_EQ(stages[1].remembered, kHistory);
+  for (const WorldState& state : stages[1].states) {
+    EXPECT_EQ(to_grid_state(state).picked, 1);
+    EXPECT_EQ(to_grid_state(state).now.treasures[0], kPicked);
+  }
 }
 
 TEST(PolicyPicture, NothingIsClippedAndDisagreementHasAGround) {
-  const Maze maze = open_maze();
-  const PolicyStage stage = always_up(maze, treasures(), 0.6);
   for (const double scale : {0.25, 1.0, 2.0})
     for (const int stages : {1, 2}) {
-      const Canvas canvas =
-          draw_policy(maze, kRedBlue, std::vector(size_t(stages), stage), {"title", "caption", scale}, font());
-      EXPECT_EQ(canvas.clipped(), 0) << scale;
-      EXPECT_EQ(
-          canvas.png(),
-          draw_policy(maze, kRedBlue, std::vector(size_t(stages), stage), {"title", "caption", scale}, font()).png());
+      const auto draw = [&] {
+        return face().draw_policy(red_blue(), std::vector(size_t(stages), always_up(0, 0.6)),
+                                  {"title", "caption", scale}, font());
+      };
+      EXPECT_EQ(draw().clipped(), 0) << scale;
+      EXPECT_EQ(draw().png(), draw().png());
     }
 }
 

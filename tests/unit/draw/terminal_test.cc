@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <numeric>
 
+#include "draw/grid/grid_face.h"
 #include "draw/terminal/terminal.h"
 
 namespace synpo {
@@ -67,7 +69,10 @@ TEST(Terminal, BlocksShrinkToTheWidth) {
 size_t mazes_in_a_row(int64_t columns, int width) {
   MapStyle style;
   style.columns = columns;
-  const std::string text = terminal_maps(builtin_mazes(), style, TerminalColour::kNone, width),
+  const GridFace face(std::make_shared<const GridSet>(builtin_mazes()));
+  std::vector<int> all(size_t(face.world().envs()));
+  std::iota(all.begin(), all.end(), 0);
+  const std::string text = face.plans_text(all, style, TerminalColour::kNone, width),
                     line = text.substr(0, text.find('\n'));
   size_t names = 0;
   for (size_t at = line.find("map"); at != std::string::npos; at = line.find("map", at + 1)) ++names;
@@ -76,15 +81,16 @@ size_t mazes_in_a_row(int64_t columns, int width) {
 
 TEST(Terminal, Mazes) {
   const Maze& maze = builtin_mazes()[0];
+  const GridFace face(std::make_shared<const GridSet>(builtin_mazes()));
   MapStyle style;
   style.title = "One";
-  const std::string plain = terminal_maps({maze}, style, TerminalColour::kNone, 80);
+  const std::string plain = face.plans_text({0}, style, TerminalColour::kNone, 80);
   ASSERT_TRUE(plain.starts_with("One\n\nmap1\n" + std::string(32, '#') + '\n'));
   const size_t first = plain.find('#');
   for (int cell = 0; cell < kGridCells; ++cell)
     EXPECT_EQ(plain[first + cell / kGridSide * (2 * kGridSide + 1) + cell % kGridSide * 2], maze.wall[cell] ? '#' : ' ')
         << cell;
-  const std::string coloured = terminal_maps({maze}, {}, TerminalColour::kTrue, 80);
+  const std::string coloured = face.plans_text({0}, {}, TerminalColour::kTrue, 80);
   EXPECT_TRUE(coloured.starts_with("map1\n\033[38;5;231;48;2;62;70;82m" + std::string(32, ' ') + "\033[0m\n"));
   EXPECT_EQ(coloured.find('#'), std::string::npos);
 }

@@ -250,21 +250,31 @@ TEST(Evaluate, NoEpisodesIsNoWork) {
   for (const PairResult& result : run(hashed, {}, 2)) EXPECT_TRUE(same(result, {}));
 }
 
-// Scores by the agent's cell and the number of pictures: an input is the same as what a running episode would give.
-TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
-  const EnvTask pair = {3, 7};
-  const Maze& maze = builtin_world().maze(pair.env);
+// A start of the pair with the agent on every free cell.
+std::vector<WorldState> states_everywhere(EnvTask pair) {
   GridState state = to_grid_state(episode_start(builtin_world(), pair, 5, Purpose::kEpisodeStart, 0));
+  std::vector<WorldState> states;
+  for (const uint8_t cell : builtin_world().maze(pair.env).free_cells) {
+    state.now.agent = cell;
+    states.push_back(to_world_state(state));
+  }
+  return states;
+}
+
+// Scores by the agent's cell and the number of pictures: an input is the same as what a running episode would give.
+TEST(Probe, AsksForEveryStateWithItsHistory) {
+  const EnvTask pair = {3, 7};
+  const std::vector<WorldState> states = states_everywhere(pair);
+  ASSERT_GT(states.size(), Policy<float>::kInferenceUnit) << "more than are inferred at a time";
   for (const int pictures_each : {1, 2, kHistory}) {
     FunctionPolicy policy(hashed);
-    const std::vector<ActionRates> rates = probe_cells(policy, builtin_world(), pair, state, 1, pictures_each);
-    ASSERT_EQ(rates.size(), maze.free_cells.size());
+    const std::vector<ActionRates> rates = probe_states(policy, builtin_world(), pair, states, 1, pictures_each);
+    ASSERT_EQ(rates.size(), states.size());
     for (size_t i = 0; i < rates.size(); ++i) {
-      state.now.agent = maze.free_cells[i];
       StateHistory history;
-      for (int k = 0; k < pictures_each; ++k) history.push(to_world_state(state));
+      for (int k = 0; k < pictures_each; ++k) history.push(states[i]);
       uint8_t pictures[kGridCells * kHistory];
-      draw_history(maze, history, 1, pictures);
+      draw_history(builtin_world().maze(pair.env), history, 1, pictures);
       float scores[kGridActions];
       hashed(pictures, 0, scores);
       EXPECT_NEAR(std::accumulate(rates[i].begin(), rates[i].end(), 0.0), 1, 1e-12);
@@ -276,8 +286,7 @@ TEST(Probe, AsksForEveryFreeCellWithItsHistory) {
 
 TEST(Probe, ProbabilitiesAreTheSoftmaxOfTheScores) {
   FunctionPolicy policy(always<kLeft>);
-  const GridState state = to_grid_state(episode_start(builtin_world(), {0, 0}, 5, Purpose::kEpisodeStart, 0));
-  for (const ActionRates& rates : probe_cells(policy, builtin_world(), {0, 0}, state, 1, 1)) {
+  for (const ActionRates& rates : probe_states(policy, builtin_world(), {0, 0}, states_everywhere({0, 0}), 1, 1)) {
     EXPECT_NEAR(rates[kLeft], std::exp(1) / (std::exp(1) + 4), 1e-12);
     EXPECT_NEAR(rates[kPick], 1 / (std::exp(1) + 4), 1e-12);
   }

@@ -1,8 +1,9 @@
-#include "draw/paper.h"
+#include "draw/kitchen/kitchen_colours.h"
 
 #include <cmath>
 
 #include "draw/colour.h"
+#include "draw/paper.h"
 
 namespace synpo {
 namespace {
@@ -10,10 +11,6 @@ namespace {
 constexpr double kFloorTint = 0.62;  // of the way to white
 
 }  // namespace
-
-const std::array<Rgb, kTreasures> kPaperTreasures = {
-    {{200, 38, 45}, {32, 90, 190}, {34, 134, 66}, {243, 146, 20}, {122, 56, 168}}};
-const char* const kTreasureNames[kTreasures] = {"red", "blue", "green", "orange", "purple"};
 
 Rgb paper_colour(const Colour& colour) {
   return {uint8_t(std::lround(colour.r)), uint8_t(std::lround(colour.g)), uint8_t(std::lround(colour.b))};

@@ -1,4 +1,4 @@
-#include "draw/episode/episode_words.h"
+#include "draw/face/episode_words.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -52,6 +52,7 @@ std::string describe_end(const std::string& outcome, const std::vector<WorldStep
   char reward[32];
   std::snprintf(reward, sizeof reward, "%s%.2f", cents < 0 ? "\u2212" : "", std::abs(cents) / 100.0);
   std::string out = outcome + " after " + counted(steps, "step", "steps");
+  if (fewest < 0) return out + ", reward " + reward;
   if (!results.back().success)
     out += concat(" (success takes ", fewest, ")");
   else

@@ -1,4 +1,4 @@
-#include "draw/episode/path.h"
+#include "draw/face/path.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "draw/canvas/stroke.h"
 #include "draw/colour.h"
+#include "draw/paper.h"
 
 namespace synpo {
 namespace {
@@ -134,6 +135,12 @@ void draw_counts(Canvas& canvas, const PlanGrid& place, const std::vector<int>& 
 void draw_count_sign(Canvas& canvas, const Box& box) {
   canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight,
               Upright::kMiddle);
+}
+
+void draw_start(Canvas& canvas, const Box& box) {
+  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  canvas.disc(centre, box.width * 0.34, kPaperAgent);
+  canvas.disc(centre, box.width * 0.22, kPaper);
 }
 
 }  // namespace synpo

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "draw/canvas/canvas.h"
-#include "draw/episode/plan_grid.h"
+#include "draw/face/plan_grid.h"
 
 namespace synpo {
 
@@ -27,5 +27,8 @@ void draw_path(Canvas& canvas, const PlanGrid& place, const std::vector<int>& ce
 void draw_counts(Canvas& canvas, const PlanGrid& place, const std::vector<int>& cells);
 bool has_counts(int cell, const std::vector<int>& cells);
 void draw_count_sign(Canvas& canvas, const Box& box);
+
+// The ring where the way begins.
+void draw_start(Canvas& canvas, const Box& box);
 
 }  // namespace synpo
