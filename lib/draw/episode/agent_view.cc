@@ -23,7 +23,8 @@ Canvas draw_agent_view(const WorldFace& face, const Film& film, const ViewStyle&
   const PlanLayout plan = lay_out_plan(size, panels.wide_pt, panels.side_pt, px);
   const int margin = px(kMarginPt), between = px(panels.between_pt), text = px(kTextPt), heading = text + px(8);
   const int side = std::max(square_side(panels.side_pt, face.seen_unit(), px), plan.high),
-            plan_width = std::max(plan.wide, font.width(panels.plan_title, text)), inside = plan_width + between + side;
+            plan_width = std::max(plan.wide, font.width(panels.plan_title, text)),
+            before_seen = size.rows > 0 ? plan_width + between : 0, inside = before_seen + side;
 
   const bool has_input = !style.history && !panels.input_title.empty();
   const HistoryRow row(inside, face.input_unit(), px);
@@ -38,12 +39,14 @@ Canvas draw_agent_view(const WorldFace& face, const Film& film, const ViewStyle&
   Canvas canvas(inside + 2 * margin, key_y + std::max(key.height(), input) + margin, font);
 
   title.draw(canvas, margin, margin);
-  const int seen_x = margin + plan_width + between;
-  canvas.text(margin, headings_y, panels.plan_title, text, kSoftInk);
+  const int seen_x = margin + before_seen;
   canvas.text(seen_x, headings_y, panels.seen_title, text, kSoftInk);
   const PlanGrid place = {margin + (plan_width - plan.wide) / 2, panels_y + (side - plan.high) / 2, plan.cell,
                           size.columns};
-  if (size.rows > 0) face.draw_moment(canvas, place, film, moment);
+  if (size.rows > 0) {
+    canvas.text(margin, headings_y, panels.plan_title, text, kSoftInk);
+    face.draw_moment(canvas, place, film, moment);
+  }
   face.draw_seen(canvas, {seen_x, panels_y, side, side}, film, moment);
   if (style.history)
     row.draw(canvas, margin, beneath_y, panels.inputs_title, moment + 1, [&](const Box& box, int i, bool missing) {

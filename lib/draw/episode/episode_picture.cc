@@ -13,7 +13,8 @@
 namespace synpo {
 namespace {
 
-constexpr double kSidePt = 330, kFrameSidePt = 208, kMarginPt = 12, kTextPt = 9, kLeastWidePt = 380;
+constexpr double kSidePt = 330, kFrameSidePt = 208, kMarginPt = 12, kTextPt = 9;
+constexpr double kLeastWidePt = 240, kLeastHighPt = 90, kWordyPt = 380;  // of small plans, and with words beside them
 constexpr int kStripColumns = 6;
 
 void draw_way(Canvas& canvas, const WorldFace& face, const PlanGrid& place, const Film& film, int moment, Shown shown) {
@@ -57,8 +58,10 @@ Canvas draw_episode(const WorldFace& face, const Film& film, const EpisodeStyle&
   const int margin = px(kMarginPt), between = px(20), bar = time_bar_width(font, px);
   const std::vector<KeyEntry> entries = face.way_key(film, plan.cell);
   const bool beside = face.key_beside(), has_plan = size.rows > 0;
-  int inside = has_plan ? plan.wide + bar : px(kLeastWidePt);
-  if (beside) inside = std::max(inside + between + key_width(entries, font, px), px(kLeastWidePt));
+  const int high = has_plan ? std::max(plan.high, px(kLeastHighPt)) : 0;
+  const int inside = beside || !has_plan
+                         ? std::max(plan.wide + bar + between + key_width(entries, font, px), px(kWordyPt))
+                         : std::max(plan.wide + bar, px(kLeastWidePt));
   const Key key(entries, beside ? 1 : inside, style.scale, font);
   const Heading heading(style.title.empty() ? face.name(film.pair) : style.title, face.describe(film), inside,
                         style.scale, font);
@@ -67,12 +70,12 @@ Canvas draw_episode(const WorldFace& face, const Film& film, const EpisodeStyle&
 
   const int plan_y = margin + heading.height() + px(4);
   const int key_x = beside ? margin + plan.wide + bar + between : margin,
-            key_y = beside ? plan_y : plan_y + plan.high + px(12);
-  const int panel_bottom = std::max(plan_y + plan.high, key_y + key.height()), strip_y = panel_bottom + px(14);
+            key_y = beside ? plan_y : plan_y + high + px(12);
+  const int panel_bottom = std::max(plan_y + high, key_y + key.height()), strip_y = panel_bottom + px(14);
   Canvas canvas(inside + 2 * margin, (strip.height() > 0 ? strip_y + strip.height() : panel_bottom) + margin, font);
   heading.draw(canvas, margin, margin);
   draw_way(canvas, face, {margin, plan_y, plan.cell, size.columns}, film, film.steps(), Shown::kWhole);
-  if (has_plan) draw_time_bar(canvas, margin + plan.wide, plan_y, plan.high, film.steps(), time_marks(face, film), px);
+  if (has_plan) draw_time_bar(canvas, margin + plan.wide, plan_y, high, film.steps(), time_marks(face, film), px);
   key.draw(canvas, key_x, key_y);
   strip.draw(canvas, margin, strip_y);
   return canvas;

@@ -111,9 +111,10 @@ std::string WorldFace::film_text(const Film& film, TerminalColour) const {
   return text + describe(film) + '\n';
 }
 
-int WorldFace::seen_unit() const { return 1; }
+int WorldFace::seen_unit() const { return shows_pictures() ? world().observation_spec().side : 1; }
 
-void WorldFace::draw_seen(Canvas& canvas, const Box& box, const Film&, int moment) const {
+void WorldFace::draw_seen(Canvas& canvas, const Box& box, const Film& film, int moment) const {
+  if (shows_pictures()) return draw_observation(canvas, box, film, moment);
   canvas.fill(box, kPaper);
   const int size = box.width / 8;
   if (size >= 6)
@@ -121,9 +122,27 @@ void WorldFace::draw_seen(Canvas& canvas, const Box& box, const Film&, int momen
                 Across::kCentre, Upright::kMiddle);
 }
 
+bool WorldFace::shows_pictures() const { return world().observation_spec().sight == Sight::kPictures; }
+
+void WorldFace::draw_observation(Canvas& canvas, const Box& box, const Film& film, int moment) const {
+  const ObservationSpec& spec = world().observation_spec();
+  std::vector<uint8_t> observation(spec.bytes());
+  StateHistory history;
+  history.push(film.states[size_t(moment)]);
+  world().observe(film.pair.env, history, film.window, observation.data());
+  const PlanGrid place = {box.x, box.y, box.width / spec.side, spec.side};
+  for (int at = 0; at < spec.side * spec.side; ++at)
+    canvas.fill(place.box(at), spec.palette[observation[size_t(at * kHistory + kHistory - 1)]]);
+}
+
 std::string WorldFace::seen_words(const Film&) const { return ""; }
 
-ViewPanels WorldFace::view_panels(const Film&) const {
+ViewPanels WorldFace::view_panels(const Film& film) const {
+  if (plan_size(film.pair.env).rows == 0)
+    return {.plan_title = "",
+            .seen_title = "what the agent sees",
+            .inputs_title = "the last four pictures",
+            .input_title = ""};
   return {.plan_title = concat("(a) the ", kind().environment),
           .seen_title = "(b) what the agent sees",
           .inputs_title = "(c) the last four pictures",

@@ -1,8 +1,9 @@
 // How a world is drawn: plans of its environments, an episode's way over them, what the agent sees, and the words for
 // all of it. The pictures (draw/episode) are laid out once for all worlds and ask the world's face for what is in them.
 //
-// WorldFace itself is the face of a world that has no other: it has no plans, and says in words what others draw. A
-// world's own face overrides what the world can do better. Which one a world has, draw/worlds/faces.h says.
+// WorldFace itself is the face of a world that has no other: it has no plans, shows the pictures that the network is
+// given where it is given any, and says all else in words. A world's own face overrides what it can do better. Which
+// face a world has, draw/worlds/faces.h says.
 #pragma once
 #include <memory>
 #include <string>
@@ -103,6 +104,7 @@ class WorldFace {
 
   // The sides of its picture are a multiple of so many pixels.
   virtual int seen_unit() const;
+  // Of itself the newest picture of the network's input, where that is made of pictures.
   virtual void draw_seen(Canvas& canvas, const Box& box, const Film& film, int moment) const;
   // What to add to "what the agent saw".
   virtual std::string seen_words(const Film& film) const;
@@ -142,6 +144,8 @@ class WorldFace {
   std::vector<int> agent_cells(const Film& film, int moment) const;
 
  private:
+  bool shows_pictures() const;
+  void draw_observation(Canvas& canvas, const Box& box, const Film& film, int moment) const;
   std::shared_ptr<const World> world_;
 };
 

@@ -151,13 +151,6 @@ std::string GridFace::film_text(const Film& film, TerminalColour colour) const {
   return text + describe(film) + '\n';
 }
 
-void GridFace::draw_seen(Canvas& canvas, const Box& box, const Film& film, int moment) const {
-  uint8_t colours[kGridCells];
-  draw_view(maze(film), frame(film, moment), film.window, colours);
-  const PlanGrid place = maze_grid(box.x, box.y, box.width / kGridSide);
-  for (int at = 0; at < kGridCells; ++at) canvas.fill(place.box(at), kPalette[colours[at]]);
-}
-
 std::string GridFace::seen_words(const Film& film) const { return ", " + window_words(film); }
 
 ViewPanels GridFace::view_panels(const Film& film) const {

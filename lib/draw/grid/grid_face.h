@@ -34,8 +34,6 @@ class GridFace : public WorldFace {
   // towards the end; without them walls are ####.
   std::string film_text(const Film& film, TerminalColour colour) const override;
 
-  int seen_unit() const override { return kGridSide; }
-  void draw_seen(Canvas& canvas, const Box& box, const Film& film, int moment) const override;
   std::string seen_words(const Film& film) const override;
 
   ViewPanels view_panels(const Film& film) const override;
