@@ -15,6 +15,7 @@
 #include "learn/imitate.h"
 #include "learn/long_run.h"
 #include "play/world_factory.h"
+#include "policy/method/registry.h"
 
 using namespace synpo;
 

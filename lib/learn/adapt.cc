@@ -7,6 +7,7 @@
 #include "base/take_rows.h"
 #include "nn/init.h"
 #include "play/running_episode.h"
+#include "policy/method/registry.h"
 
 namespace synpo {
 namespace {

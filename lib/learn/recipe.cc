@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "play/model.h"
+#include "policy/method/registry.h"
 
 namespace synpo {
 namespace {

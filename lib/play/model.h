@@ -12,14 +12,6 @@
 
 namespace synpo {
 
-const std::vector<std::string>& method_names();
-// Throws kData for another name. There is one for float and one for double.
-template <class T = float>
-std::unique_ptr<Policy<T>> make_policy(const std::string& method, const PolicyShape& shape);
-std::map<std::string, int64_t> describe_shape(const PolicyShape& shape);
-// Throws kData for sizes that are missing or out of bounds. Pictures' side and palette are the world's to say.
-PolicyShape parse_shape(const std::map<std::string, int64_t>& sizes);
-
 struct Model {
   std::string method;
   PolicyShape shape;

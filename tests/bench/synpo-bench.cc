@@ -32,6 +32,7 @@
 #include "play/model.h"
 #include "play/running_episode.h"
 #include "play/world_factory.h"
+#include "policy/method/registry.h"
 #include "policy/method/synpo.h"
 #include "world/grid/grid_set.h"
 #include "world/grid/view.h"

@@ -9,6 +9,7 @@
 
 #include "helpers/numbers.h"
 #include "play/model.h"
+#include "policy/method/registry.h"
 #include "policy/policy.h"
 #include "world/grid/grid_set.h"
 #include "world/grid/view.h"

@@ -8,6 +8,7 @@
 #include "learn/ppo.h"
 #include "nn/rmsprop.h"
 #include "policy/method/encoded_policy.h"
+#include "policy/method/registry.h"
 
 namespace synpo {
 namespace {

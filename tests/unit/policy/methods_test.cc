@@ -8,6 +8,7 @@
 #include <set>
 
 #include "helpers/policy_fixture.h"
+#include "policy/method/registry.h"
 
 namespace synpo {
 namespace {
