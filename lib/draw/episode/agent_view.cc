@@ -12,6 +12,7 @@ namespace synpo {
 namespace {
 
 constexpr double kMarginPt = 12, kTextPt = 9, kInputPt = 110;
+constexpr double kLeastPt = 360;  // what the words beneath need
 
 }  // namespace
 
@@ -24,7 +25,7 @@ Canvas draw_agent_view(const WorldFace& face, const Film& film, const ViewStyle&
   const int margin = px(kMarginPt), between = px(panels.between_pt), text = px(kTextPt), heading = text + px(8);
   const int side = std::max(square_side(panels.side_pt, face.seen_unit(), px), plan.high),
             plan_width = std::max(plan.wide, font.width(panels.plan_title, text)),
-            before_seen = size.rows > 0 ? plan_width + between : 0, inside = before_seen + side;
+            before_seen = size.rows > 0 ? plan_width + between : 0, inside = std::max(before_seen + side, px(kLeastPt));
 
   const bool has_input = !style.history && !panels.input_title.empty();
   const HistoryRow row(inside, face.input_unit(), px);
