@@ -11,7 +11,7 @@ using namespace synpo;
 
 namespace {
 
-// What -y means: the log's columns, one for each part, and the axis.
+// The meaning of -y: the log's columns, one for each part, and the axis.
 struct Measure {
   std::vector<std::string> columns, parts;
   std::string title;

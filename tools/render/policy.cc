@@ -9,7 +9,7 @@ using namespace synpo;
 
 namespace {
 
-// What the agent remembers in a cell.
+// Says what the agent remembers in a cell.
 std::string history_text(int pictures) {
   if (pictures == 1)
     return "the agent stands in each cell as at the first step of an episode, with no picture from before";

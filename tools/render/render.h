@@ -1,4 +1,4 @@
-// What the commands of synpo-render share.
+// Shared by the commands of synpo-render: options, operands, and how pictures are written.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 #include "draw/canvas/canvas.h"
 #include "draw/face/world_face.h"
 
-// What every command takes: where the picture goes, its size and its font; and --ansi, where the command can draw with
+// Every command takes these: where the picture goes, its size and its font; and --ansi, where the command can draw with
 // characters.
 struct PictureOptions {
   std::string output = "-", font;

@@ -12,14 +12,17 @@
 
 namespace synpo {
 
+struct Point {
+  double x, y;
+};
+
 struct Box {
   int x, y, width, height;
   int right() const { return x + width; }
   int bottom() const { return y + height; }
-};
-
-struct Point {
-  double x, y;
+  Point centre() const { return {x + width / 2.0, y + height / 2.0}; }
+  // So many pixels smaller at every side.
+  Box inset(int by) const { return {x + by, y + by, width - 2 * by, height - 2 * by}; }
 };
 
 // Points to pixels: at least one.

@@ -10,7 +10,7 @@ namespace synpo {
 Heading::Heading(const std::string& title, const std::string& caption, int width, double scale, const Font& font,
                  double title_pt) {
   constexpr double kCaptionPt = 8.5, kLeading = 1.45, kSpacePt = 4;
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  const Pixels px{scale};
   title_size_ = px(title_pt);
   title_line_ = px(title_pt * kLeading);
   caption_size_ = px(kCaptionPt);

@@ -15,7 +15,7 @@ struct Dash {
 // What lies outside `clip` is left out.
 Mask stroke_mask(const std::vector<Point>& points, double width, const Dash& dash, const Box& clip);
 
-// What lies between two lines with the same x, which rise: `upper` has the smaller y.
+// The area between two lines with the same x, which rise: `upper` has the smaller y.
 Mask band_mask(const std::vector<Point>& upper, const std::vector<Point>& lower, const Box& clip);
 
 }  // namespace synpo

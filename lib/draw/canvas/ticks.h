@@ -17,7 +17,7 @@ Ticks nice_ticks(double low, double high, int most);
 // "0.05", "12", "1e+09"; a minus sign, not a hyphen, before negative numbers. `value` is a multiple of `step`.
 std::string tick_text(double value, double step);
 
-// What an axis shows: values from `low` to `high`, written in units of `unit` ("1.5" for 1,500,000 in millions).
+// An axis shows values from `low` to `high`, written in units of `unit` ("1.5" for 1,500,000 in millions).
 struct Axis {
   double low = 0, high = 1, unit = 1;
   std::string title;  // with the unit

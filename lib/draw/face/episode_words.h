@@ -1,4 +1,4 @@
-// What the pictures of an episode share, whatever its world: which moments to show, and the words for how it ended.
+// Episodes in words, whatever their world: how they ended, and which of their moments are worth showing.
 #pragma once
 #include <string>
 #include <vector>

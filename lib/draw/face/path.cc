@@ -138,7 +138,7 @@ void draw_count_sign(Canvas& canvas, const Box& box) {
 }
 
 void draw_start(Canvas& canvas, const Box& box) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   canvas.disc(centre, box.width * 0.34, kPaperAgent);
   canvas.disc(centre, box.width * 0.22, kPaper);
 }

@@ -7,7 +7,7 @@
 
 namespace synpo {
 
-// What a policy would do in a state.
+// The best action of a policy in a state.
 struct PolicyChoice {
   int action;  // of the highest probability, the first of them
   double probability;

@@ -21,7 +21,7 @@
 
 namespace synpo {
 
-// What there is to say about the worlds of a face.
+// Names and features that the worlds of a face share.
 struct FaceKind {
   const char *environment = "environment", *environments = "environments";
   const char* task_hint = nullptr;  // what a task's name is made of: "two of R B G O P, such as R-B"
@@ -62,7 +62,7 @@ class WorldFace {
   std::string name(EnvTask pair) const;
   // "success", "timeout", "unfinished" where the actions end before the episode does, or what was wrong.
   virtual std::string outcome(const Film& film) const;
-  // What action `i` did: "pick Mug"; its name where there is nothing more to say.
+  // Says what action `i` did: "pick Mug"; its name where there is nothing more to say.
   virtual std::string action_words(const Film& film, int i) const;
   // "; R at step 20, B at step 41; 2 steps into walls": what describe() says after the outcome.
   virtual std::string deeds(const Film& film) const;
@@ -70,7 +70,7 @@ class WorldFace {
   std::string describe(const Film& film) const;
   // "the expert's next action: UP", or "success" after the end.
   std::string next_words(const Film& film) const;
-  // What stands for what action `i` did, where that is worth a mark; else there is none.
+  // A sign for what action `i` did; null where that is not worth a mark.
   virtual Sign event_sign(const Film& film, int i) const;
   // Actions: spread_moments() with those that have a sign.
   std::vector<int> key_moments(const Film& film, int count) const;
@@ -100,13 +100,13 @@ class WorldFace {
   // The path on a terminal, ending with what describe() says.
   virtual std::string film_text(const Film& film, TerminalColour colour) const;
 
-  // What the agent sees.
+  // Pictures of what the agent sees.
 
   // The sides of its picture are a multiple of so many pixels.
   virtual int seen_unit() const;
   // Of itself the newest picture of the network's input, where that is made of pictures.
   virtual void draw_seen(Canvas& canvas, const Box& box, const Film& film, int moment) const;
-  // What to add to "what the agent saw".
+  // Follows "what the agent saw" in a title.
   virtual std::string seen_words(const Film& film) const;
 
   // The last moment of an expert's film.

@@ -28,7 +28,7 @@ void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze) {
 
 void draw_treasure(Canvas& canvas, const Box& box, int treasure) {
   const int inset = std::max(1, box.width / 10);
-  canvas.fill({box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, kPaperTreasures[treasure]);
+  canvas.fill(box.inset(inset), kPaperTreasures[treasure]);
   const int size = box.width * 5 / 8;
   if (size >= 6)
     canvas.text(box.x + box.width / 2, box.y + box.height / 2, std::string(1, kTreasureLetters[treasure]), size,
@@ -36,7 +36,7 @@ void draw_treasure(Canvas& canvas, const Box& box, int treasure) {
 }
 
 void draw_agent(Canvas& canvas, const Box& box) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   const double radius = box.width * 0.42;
   canvas.disc(centre, radius, kPaper);
   canvas.disc(centre, radius * 0.86, kPaperAgent);
@@ -56,7 +56,7 @@ void draw_task(Canvas& canvas, const Box& box, const Task& task) {
 
 Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Font& font) {
   if (mazes.empty()) fail(Exit::kUsage, "no maze to draw");
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * style.scale))); };
+  const Pixels px{style.scale};
   const int count = int(mazes.size());
   const int wished = style.columns > 0 ? int(style.columns) : int(std::lround(std::sqrt(count * 1.25)));
   const int columns = std::clamp(wished, 1, count);

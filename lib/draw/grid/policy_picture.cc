@@ -29,7 +29,7 @@ Rgb action_colour(bool agrees, double probability) {
 
 // An arrow over most of the box; for PICK a disc.
 void draw_action(Canvas& canvas, const Box& box, int action, Rgb colour) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   const double side = box.width;
   if (action == kPick) {
     canvas.disc(centre, 0.28 * side, colour);
@@ -45,7 +45,7 @@ void draw_action(Canvas& canvas, const Box& box, int action, Rgb colour) {
 
 // A bar at the border that an optimal action leads across; for PICK a ring.
 void draw_optimal(Canvas& canvas, const Box& box, int action) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   const double side = box.width;
   if (action == kPick) {
     canvas.disc(centre, 0.45 * side, kInk);

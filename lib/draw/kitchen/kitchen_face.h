@@ -10,7 +10,7 @@
 
 namespace synpo {
 
-// What an action did to a thing: an object for kPicked, else a receptacle.
+// The effect of an action on a thing: an object for kPicked, else a receptacle.
 enum class Deed : uint8_t { kNone, kOpened, kClosed, kPicked, kPut };
 struct KitchenEvent {
   Deed deed = Deed::kNone;

@@ -53,8 +53,8 @@ void draw_stroke(Canvas& canvas, const std::vector<Point>& points, double width,
 
 double door_thickness(double cell) { return std::max(2.0, cell * 0.2); }
 
-// What a closed door leaves of a box, its inset included.
-Box behind_door(const Box& box, int back, int cell) {
+// The part of a box that a closed door and its inset leave free.
+Box box_without_door(const Box& box, int back, int cell) {
   const int thick = int(std::lround(1.3 * door_thickness(cell))), front = (back + 2) % 4;
   return {box.x + (front == 3 ? thick : 0), box.y + (front == 0 ? thick : 0), box.width - (front % 2 ? thick : 0),
           box.height - (front % 2 ? 0 : thick)};
@@ -71,8 +71,7 @@ void draw_front(Canvas& canvas, const Box& box, int back, bool open, double cell
     return;
   }
   const int frame = std::max(2, int(cell / 5));
-  canvas.fill({box.x + frame, box.y + frame, box.width - 2 * frame, box.height - 2 * frame},
-              paper_colour(kInsideColour));
+  canvas.fill(box.inset(frame), paper_colour(kInsideColour));
   const double line = std::max(1.5, cell * 0.09), reach = front.length;
   std::vector<Point> arc;
   constexpr int kPieces = 16;
@@ -109,8 +108,7 @@ void draw_lettering(Canvas& canvas, const Box& box, int receptacle, int cell, Le
 
 void draw_sink_basin(Canvas& canvas, const Box& box, int cell) {
   const int inset = std::max(1, cell / 4);
-  canvas.frame({box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, std::max(1, cell / 14),
-               mix(receptacle_colour(kSink), kInk, 0.45));
+  canvas.frame(box.inset(inset), std::max(1, cell / 14), mix(receptacle_colour(kSink), kInk, 0.45));
 }
 
 Sign floor_sign(const Kitchen& kitchen) {
@@ -172,13 +170,13 @@ void draw_kitchen(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen,
     else
       draw_sink_basin(canvas, box, place.cell);
     const Box free =
-        i < kKitchenDoors && !open ? behind_door(box, kitchen.receptacles[size_t(i)].back, place.cell) : box;
+        i < kKitchenDoors && !open ? box_without_door(box, kitchen.receptacles[size_t(i)].back, place.cell) : box;
     draw_lettering(canvas, free, i, place.cell, lettering, open ? paper_colour(kInsideColour) : receptacle_colour(i));
   }
 }
 
 void draw_object(Canvas& canvas, const Box& box, int object) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   const double radius = box.width * 0.46;
   canvas.disc(centre, radius, kInk);
   canvas.disc(centre, radius - std::max(1.0, box.width * 0.06), object_colour(object));
@@ -189,7 +187,7 @@ void draw_object(Canvas& canvas, const Box& box, int object) {
 }
 
 void draw_looker(Canvas& canvas, const Box& box, int heading) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   const double radius = box.width * 0.48;
   const Point ahead = {double(kColumnStep[heading / 90]), double(kRowStep[heading / 90])};
   const auto at = [&](double forward, double right) {
@@ -206,7 +204,7 @@ Sign object_sign(int object) {
 }
 
 void draw_wanted(Canvas& canvas, const Box& box, int object) {
-  const Point centre = {box.x + box.width / 2.0, box.y + box.height / 2.0};
+  const Point centre = box.centre();
   canvas.disc(centre, box.width * 0.68, kInk);
   canvas.disc(centre, box.width * 0.6, kPaper);
   draw_object(canvas, box, object);
@@ -215,7 +213,7 @@ void draw_wanted(Canvas& canvas, const Box& box, int object) {
 Sign wanted_sign(int object) {
   return [object](Canvas& canvas, const Box& box) {
     const int inset = box.width / 7;
-    draw_wanted(canvas, {box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, object);
+    draw_wanted(canvas, box.inset(inset), object);
   };
 }
 

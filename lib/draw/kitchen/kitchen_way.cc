@@ -14,8 +14,6 @@
 namespace synpo {
 namespace {
 
-Point middle_of(const Box& box) { return {box.x + box.width / 2.0, box.y + box.height / 2.0}; }
-
 void draw_turn_sign(Canvas& canvas, const Box& box) {
   draw_arrowhead(canvas, {box.x + box.width / 2.0, box.y + 0.2 * box.height}, {0, -1}, 0.6 * box.height,
                  time_colour(0.5));
@@ -40,13 +38,13 @@ void draw_grasp_sign(Canvas& canvas, const Box& box) {
 }
 
 void ring_object(Canvas& canvas, const Box& box, int object, Rgb colour) {
-  canvas.disc(middle_of(box), box.width * 0.66, colour);
+  canvas.disc(box.centre(), box.width * 0.66, colour);
   draw_object(canvas, box, object);
 }
 
 // Around the box, as what is open is dark.
 void frame_receptacle(Canvas& canvas, const Box& box, int line, Rgb colour) {
-  canvas.frame({box.x - line, box.y - line, box.width + 2 * line, box.height + 2 * line}, line, colour);
+  canvas.frame(box.inset(-line), line, colour);
 }
 
 // The place of the box that is nearest to the agent.
@@ -57,7 +55,7 @@ Point nearest(const Box& box, Point to) {
 Sign ringed_object(int object, Rgb colour) {
   return [object, colour](Canvas& canvas, const Box& box) {
     const int inset = box.width / 7;
-    ring_object(canvas, {box.x + inset, box.y + inset, box.width - 2 * inset, box.height - 2 * inset}, object, colour);
+    ring_object(canvas, box.inset(inset), object, colour);
   };
 }
 
@@ -70,8 +68,8 @@ Sign framed_receptacle(int receptacle, Rgb colour) {
 
 Sign ring_sign(Rgb colour) {
   return [colour](Canvas& canvas, const Box& box) {
-    canvas.disc(middle_of(box), box.width * 0.5, colour);
-    canvas.disc(middle_of(box), box.width * 0.34, kPaper);
+    canvas.disc(box.centre(), box.width * 0.5, colour);
+    canvas.disc(box.centre(), box.width * 0.34, kPaper);
   };
 }
 
@@ -135,7 +133,7 @@ void KitchenFace::draw_things(Canvas& canvas, const PlanGrid& place, const Film&
                                                   : receptacle_box(place, kitchen(film), done.thing);
     if (done.deed == Deed::kPut) frame_receptacle(canvas, target, std::max(2, place.cell / 6), colour_of_end(film, i));
     const Point from = place.centre(cells[size_t(i)]);
-    draw_grasp(canvas, from, done.deed == Deed::kPicked ? middle_of(target) : nearest(target, from), place.cell,
+    draw_grasp(canvas, from, done.deed == Deed::kPicked ? target.centre() : nearest(target, from), place.cell,
                step_colour(i + 1, film.steps()));
   }
   draw_objects(canvas, place, kitchen(film), frame(film, 0), kitchen_task(film.pair.task).object);

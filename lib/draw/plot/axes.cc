@@ -35,7 +35,7 @@ int Axes::y_label_width(int height) const {
   return width;
 }
 
-Axes::Room Axes::room(int width, int height) const {
+Axes::Margins Axes::margins(int width, int height) const {
   const int beside = pixels(kTickPt) + pixels(kSpacePt), title = pixels(kTitlePt);
   const Ticks ticks = x_ticks(width);
   int right = 0;

@@ -14,10 +14,10 @@ class Axes {
   Axes(const Axis& x, const Axis& y, double scale, const Font& font) : x_(x), y_(y), scale_(scale), font_(font) {}
 
   // Pixels that labels and titles need around a box of this size.
-  struct Room {
+  struct Margins {
     int left, right, top, bottom;
   };
-  Room room(int width, int height) const;
+  Margins margins(int width, int height) const;
 
   // Grid, ticks, labels and titles. To be called before the curves are drawn, frame() after them.
   void draw(Canvas& canvas, const Box& box) const;

@@ -11,7 +11,7 @@ namespace {
 constexpr double kMarginPt = 10, kBetweenPt = 14, kSmallestPlotPt = 40, kOnePanelPt = 380, kTwoPanelsPt = 620,
                  kHeightPt = 270;
 
-// What the lines and bands span, of points that x shows.
+// The range of the values that are drawn.
 struct Span {
   double low = INFINITY, high = -INFINITY;
   void add(double value) {
@@ -94,7 +94,7 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
   if (set.methods.size() > size_t(kMostMethods))
     fail(Exit::kUsage, set.methods.size(), " methods, at most ", kMostMethods,
          " can be told apart: give the runs of one method the same label, or draw fewer");
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * style.scale))); };
+  const Pixels px{style.scale};
   const bool one_panel = set.parts.size() < 2 || style.panels == 1 || (style.panels == 0 && set.methods.size() == 1);
   const int panels = one_panel ? 1 : int(set.parts.size());
   const int width = px(style.width_pt > 0 ? style.width_pt : panels == 1 ? kOnePanelPt : kTwoPanelsPt);
@@ -150,9 +150,9 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
     // first.
     next.plot = next.area;
     for (int round = 0; round < 2; ++round) {
-      const Axes::Room room = out.axes.room(next.plot.width, next.plot.height);
-      next.plot = {left + room.left, top + title + room.top, share - room.left - room.right,
-                   next.area.height - title - room.top - room.bottom};
+      const Axes::Margins margins = out.axes.margins(next.plot.width, next.plot.height);
+      next.plot = {left + margins.left, top + title + margins.top, share - margins.left - margins.right,
+                   next.area.height - title - margins.top - margins.bottom};
       if (next.plot.width < px(kSmallestPlotPt) || next.plot.height < px(kSmallestPlotPt)) no_room();
     }
     left = next.area.right() + px(kBetweenPt);

@@ -14,7 +14,7 @@ constexpr double kTextPt = 8.5, kSamplePt = 24, kSpacePt = 5, kBetweenPt = 14, k
 }  // namespace
 
 CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double scale, int width, const Font& font) {
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  const Pixels px{scale};
   CurvesLegend legend;
   const auto add = [&](const std::string& name, const CurveLook& look, bool band) {
     legend.entries.push_back({font.fitted(name, px(kTextPt), width - px(kSamplePt + kSpacePt)), look, band, 0, 0});
@@ -55,7 +55,7 @@ CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double s
 }
 
 void draw_curves_legend(Canvas& canvas, const CurvesLegend& legend, int x, int y, double scale) {
-  const auto px = [&](double pt) { return std::max(1, int(std::lround(pt * scale))); };
+  const Pixels px{scale};
   for (const CurvesLegend::Entry& entry : legend.entries) {
     const Box sample = {x + entry.x, y + entry.y, px(kSamplePt), px(kTextPt)};
     const double middle = sample.y + sample.height / 2.0;

@@ -25,9 +25,7 @@ void check(const std::vector<Embeddings>& panels) {
     if (panel.names.size() < 2) fail(Exit::kData, "fewer than two ", panel.title, ": nothing to compare");
 }
 
-void draw_dot(Canvas& canvas, const Box& box) {
-  canvas.disc({box.x + box.width / 2.0, box.y + box.height / 2.0}, box.width * 0.36, kDot);
-}
+void draw_dot(Canvas& canvas, const Box& box) { canvas.disc(box.centre(), box.width * 0.36, kDot); }
 
 void draw_marker(Canvas& canvas, const Box& box, const Embeddings& panel, size_t i) {
   if (panel.marks.empty())
@@ -161,9 +159,9 @@ Canvas draw_embedding_map(const std::vector<Embeddings>& panels, const Embedding
   for (const Embeddings& panel : panels) {
     pcas.push_back(principal_components(panel.values, int(panel.names.size()), panel.size, 2));
     axes.push_back(score_axes(pcas.back(), style.scale, font));
-    const Axes::Room room = axes.back().room(side, side);
-    inside += room.left + side + room.right;
-    below = std::max(below, room.bottom);
+    const Axes::Margins margins = axes.back().margins(side, side);
+    inside += margins.left + side + margins.right;
+    below = std::max(below, margins.bottom);
   }
   const Heading heading(style.title, style.caption, inside, style.scale, font);
   const int titles_y = margin + heading.height() + px(2), plot_y = titles_y + title + px(7);
@@ -171,11 +169,11 @@ Canvas draw_embedding_map(const std::vector<Embeddings>& panels, const Embedding
   heading.draw(canvas, margin, margin);
   int x = margin;
   for (size_t i = 0; i < panels.size(); ++i) {
-    const Axes::Room room = axes[i].room(side, side);
-    const Box plot = {x + room.left, plot_y, side, side};
+    const Axes::Margins margins = axes[i].margins(side, side);
+    const Box plot = {x + margins.left, plot_y, side, side};
     canvas.text(plot.x + side / 2, titles_y, panels[i].title, title, kInk, Across::kCentre);
     draw_scores(canvas, plot, panels[i], pcas[i], axes[i], px);
-    x = plot.right() + room.right + px(kBetweenPt);
+    x = plot.right() + margins.right + px(kBetweenPt);
   }
   return canvas;
 }

@@ -20,7 +20,7 @@ struct HeatmapLegend {
 
 HeatmapLegend lay_out_legend(const HeatFigure& figure, const HeatmapLayout& layout, const Font& font);
 void draw_legend(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& layout, const Scheme& scheme);
-// What stands for a pair that was not evaluated.
+// Draws the cell of a pair that was not evaluated.
 void draw_empty_cell(Canvas& canvas, const Box& box, int line);
 
 }  // namespace synpo

@@ -49,7 +49,7 @@ std::string common_stem(const std::vector<std::string>& names, size_t room) {
   return stem;
 }
 
-// What tells the kinds of pairs apart where there is no colour.
+// Marks the kinds of pairs where there is no colour.
 char mark_of(const HeatTable& table, int group) {
   const std::string& name = table.groups[group].name;
   return name == "seen" ? ' ' : name == "unseen" ? '*' : name[0];

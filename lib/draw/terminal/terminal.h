@@ -1,4 +1,4 @@
-// What a terminal can show, and success matrices on it as coloured blocks.
+// Terminals: the colours that they have, and success matrices as coloured blocks.
 #pragma once
 #include <string>
 
@@ -9,7 +9,7 @@ namespace synpo {
 
 enum class TerminalColour { kNone, k256, kTrue };  // 24 bits where COLORTERM says so
 
-// What the file descriptor can show: nothing where it is no terminal, where TERM is dumb or empty, and where NO_COLOR
+// The colours of a file descriptor: none where it is no terminal, where TERM is dumb or empty, and where NO_COLOR
 // is set and not empty (https://no-color.org).
 TerminalColour terminal_colour(int fd);
 // As above, but taking it for a terminal.

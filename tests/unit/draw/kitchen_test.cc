@@ -40,7 +40,7 @@ WorldState start() {
   return small_world().reset(0, random);
 }
 
-// What the expert of one task does, while the episode's task is another.
+// The expert of one task plays while the episode's task is another.
 Film play(const char* task, const char* played) {
   WorldState state = start();
   std::vector<uint8_t> actions;
