@@ -6,7 +6,7 @@
 
 namespace synpo {
 
-// What was done in n steps of a rollout: the action, log pi_old of it, and its advantage.
+// The n steps of a rollout: the action taken, log pi_old of it, and its advantage.
 struct ActedSteps {
   int n;
   const int* action;

@@ -5,7 +5,7 @@ namespace synpo {
 std::vector<float> advantages(const GaeInput& input, const GaeOptions& options) {
   std::vector<float> advantage(size_t(input.steps) * input.lanes);
   for (int lane = 0; lane < input.lanes; ++lane) {
-    double behind = 0;
+    double following = 0;
     for (int t = input.steps - 1; t >= 0; --t) {
       const size_t at = size_t(t) * input.lanes + lane;
       const bool last = t == input.steps - 1;
@@ -14,8 +14,8 @@ std::vector<float> advantages(const GaeInput& input, const GaeOptions& options) 
                                 : last                                 ? input.last_value[lane]
                                                                        : input.value[at + input.lanes];
       const double delta = input.reward[at] + options.discount * next_value - input.value[at];
-      behind = delta + (input.end[at] == StepEnd::kGoesOn ? options.discount * options.lambda * behind : 0);
-      advantage[at] = float(behind);
+      following = delta + (input.end[at] == StepEnd::kGoesOn ? options.discount * options.lambda * following : 0);
+      advantage[at] = float(following);
     }
   }
   return advantage;

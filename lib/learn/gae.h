@@ -13,7 +13,7 @@ struct GaeOptions {
   double discount = 0.99, lambda = 0.95;
 };
 
-// All of [steps, lanes], a lane one world. `last_value` [lanes] is the value of the state behind the last step;
+// All of [steps, lanes], a lane one world. `last_value` [lanes] is the value of the state after the last step;
 // `cut_value` that of the state that a truncated step led to, read there alone.
 struct GaeInput {
   int steps, lanes;
@@ -24,8 +24,8 @@ struct GaeInput {
   const float* last_value;
 };
 
-// delta_t = r_t + gamma V(s_t+1) - V(s_t), where V is 0 behind a terminal step; advantage_t = delta_t + gamma lambda
-// advantage_t+1, where nothing comes from behind an episode's end. A step's return is advantage + value.
+// delta_t = r_t + gamma V(s_t+1) - V(s_t), where V is 0 after a terminal step; advantage_t = delta_t + gamma lambda
+// advantage_t+1, where nothing comes from after an episode's end. A step's return is advantage + value.
 std::vector<float> advantages(const GaeInput& input, const GaeOptions& options);
 
 }  // namespace synpo

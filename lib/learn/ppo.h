@@ -5,7 +5,7 @@
 //   action taken
 //
 // Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the
-// first minibatch behind a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient
+// first minibatch after a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient
 // reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
 #pragma once
 #include <memory>
@@ -51,7 +51,7 @@ class Ppo {
  public:
   // Fine-tunes `model` on its seen pairs. Throws kUsage for sizes that do not divide.
   Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed);
-  // Takes up a run where checkpoint() left it. Throws kData for a checkpoint that is none of such a run.
+  // Takes up a run where checkpoint() left it. Throws kData for a checkpoint of anything else.
   void resume(const Checkpoint& checkpoint);
 
   // From scratch: running statistics of normalisation from random play.
@@ -66,7 +66,7 @@ class Ppo {
   PpoReport take_report();
   Checkpoint checkpoint(bool with_training_state) const;
 
-  // Of one minibatch; first_minibatch() is the first behind the last rollout.
+  // Of one minibatch; first_minibatch() is the first after the last rollout.
   struct Minibatch : ClippedLosses {
     double value = 0;
   };

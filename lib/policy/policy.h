@@ -1,4 +1,5 @@
-// What every method is to the learner and the evaluator: parameters in one flat array, a training step, and inference.
+// The face that every method shows to the learner and the evaluator: parameters in one flat array, a training step, and
+// inference.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -46,8 +47,8 @@ struct StepBatch {
   const int* taken = nullptr;  // the action taken, whose reward is to be predicted
   const T* reward = nullptr;
   uint64_t seed = 0, update = 0;  // name the random numbers of this batch
-  // For methods that ask for it. The step behind this one: its place in the batch; or what a step has in its place.
-  static constexpr int kTerminal = -1;  // nothing comes behind it
+  // For methods that ask for it. The place in the batch of the step after this one, or one of these.
+  static constexpr int kTerminal = -1;  // nothing comes after it
   static constexpr int kUnknown = -2;   // it is not in the batch
   const int* next = nullptr;
   const T* planner_q = nullptr;       // [size, actions], undiscounted return of each action under the planner
@@ -57,7 +58,7 @@ struct StepBatch {
       nullptr;  // [size, feature], instead of observations; the encoder then is left alone, and its gradient as it was
 };
 
-// What a method wants of a batch beyond the steps themselves.
+// A method may want more of a batch than the steps themselves.
 struct BatchNeeds {
   bool next = false, planner_q = false;
 };
@@ -66,10 +67,10 @@ struct BatchNeeds {
 // most of its moves still walks in circles where it has not.
 constexpr double kTemperature = 0.5;
 
-// What a pair is made of, and what has embeddings.
+// The two sides of a pair, which have embeddings.
 enum class PairSide { kEnv, kTask };
 
-// What the parameters of a method are for.
+// The parameters of a method serve one of these ends.
 enum class ParameterGroup {
   kEncoder,       // makes psi of what is seen
   kEmbeddings,    // of environments and tasks

@@ -47,7 +47,7 @@ class BatchNorm {
   const T* inverse_sd() const { return inverse_sd_.data(); }
 
   // Training, backward: every shard adds sum(d) and sum(d * (z - mean)) over its rows; with `masked`, d is the gradient
-  // behind a ReLU that stands right after the normalisation, here as in apply_backward() ...
+  // after a ReLU that stands right after the normalisation, here as in apply_backward() ...
   void begin_backward(int shards) { sums_.reset(shards, channels_, 2); }
   void add_backward_rows(int shard, const T* d, const T* z, size_t rows, bool masked);
   // ... then dgamma, dbeta = their gradients, and apply_backward gives dz (which may be d itself).

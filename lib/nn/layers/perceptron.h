@@ -1,4 +1,4 @@
-// A dense layer with ReLU and a dense layer behind it, over rows: in -> hidden -> out.
+// A dense layer with ReLU, then a dense layer, over rows: in -> hidden -> out.
 #pragma once
 #include <string>
 #include <vector>

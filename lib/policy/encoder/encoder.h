@@ -1,4 +1,5 @@
-// What gives the state feature psi(s) of an observation: a network of its own for each kind of sight (world.h).
+// An encoder gives the state feature psi(s) of an observation: it is a network of its own for each kind of sight
+// (world.h).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -16,7 +17,7 @@ class Encoder {
 
   virtual void initialise(uint64_t seed, T* parameters, T* statistics) const = 0;
 
-  // psi [n, feature] of observations, one behind the other. Keeps what backward() needs, which may be where the
+  // psi [n, feature] of observations, one after the other. Keeps what backward() needs, which may be where the
   // observations stand: they have to live as long. Memory grows with n. Where `frozen`, normalisation takes the running
   // statistics, which stay.
   virtual void forward(Parallel& parallel, int n, const uint8_t* observations, const T* parameters, T* statistics,

@@ -1,7 +1,7 @@
 // The state feature psi(s) of the kitchens: the temporal network of Table 3.
 //
-// Two convolutions over time, kernel 3, stride 2, padding 1, each with ReLU: 2048 x 4 -> 1024 x 2 -> 1024 x 1. Behind
-// it comes the embedding of the object in the hand, and a perceptron: 1056 -> 2048 ReLU -> 256. A padded view is zero,
+// Two convolutions over time, kernel 3, stride 2, padding 1, each with ReLU: 2048 x 4 -> 1024 x 2 -> 1024 x 1. Then
+// comes the embedding of the object in the hand, and a perceptron: 1056 -> 2048 ReLU -> 256. A padded view is zero,
 // so of the taps of the first convolution five are multiplied, and of the second one's two: its first never is.
 #pragma once
 #include <string>

@@ -34,7 +34,7 @@ class EmbeddingTable {
   // Row i as a part of a longer row, and that part's gradient back again. Both return where the next part begins.
   T* put(int i, T* to) const { return std::copy_n(row(i), width_, to); }
   const T* add_gradient(int i, const T* from);
-  // The parameters' gradient +=. Once behind each use().
+  // The parameters' gradient +=. Once after each use().
   void backward(const T* parameters, T* gradient);
 
  private:

@@ -1,5 +1,5 @@
-// The disentanglement losses (supplement, Section 2): what environment, or task, a row x comes from is told by
-// softmax(f(x)^T e) over the embeddings e of all environments, or tasks; f is a perceptron.
+// The disentanglement losses (supplement, Section 2): the environment, or task, that a row x comes from is recognised
+// by softmax(f(x)^T e) over the embeddings e of all environments, or tasks; f is a perceptron.
 #pragma once
 #include <string>
 

@@ -21,7 +21,7 @@ std::unique_ptr<Encoder<T>> make_encoder(const PolicyShape& shape, Layout& param
 template <class T>
 EncodedPolicy<T>::EncodedPolicy(const PolicyShape& shape)
     : shape_(shape), encoder_(make_encoder<T>(shape, this->parameters_, this->statistics_)),
-      behind_encoder_(this->parameters_.total()) {}
+      head_begin_(this->parameters_.total()) {}
 
 template <class T>
 void EncodedPolicy<T>::initialise(const InitOptions& options, T* parameters, T* statistics) const {
@@ -35,7 +35,7 @@ template <class T>
 Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const StepOptions& options,
                               const T* parameters, T* statistics, T* gradient, T* logits) {
   const size_t size = size_t(batch.size) * shape_.feature;
-  std::fill(gradient + behind_encoder_, gradient + this->parameters_.total(), T(0));
+  std::fill(gradient + head_begin_, gradient + this->parameters_.total(), T(0));
   T* dpsi = dpsi_.grow(size);
   std::fill_n(dpsi, size, T(0));
   if (batch.psi)

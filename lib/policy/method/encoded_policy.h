@@ -1,4 +1,4 @@
-// What all methods share: the encoder in front, which gives psi(s), and the part behind it, which is the method's own.
+// All methods share this: first an encoder, which gives psi(s), then a head, which is the method's own.
 #pragma once
 #include <memory>
 #include <utility>
@@ -11,7 +11,7 @@
 
 namespace synpo {
 
-// The part of a training step behind the encoder: what it reads and where it writes.
+// The part of a training step after the encoder: what it reads and where it writes.
 template <class T>
 struct HeadStep {
   Parallel& parallel;
@@ -44,7 +44,7 @@ class EncodedPolicy : public Policy<T> {
  protected:
   const PolicyShape& shape() const { return shape_; }
 
-  // The parameters behind the encoder; all are zero before.
+  // The head's parameters; all are zero before.
   virtual void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const = 0;
   // Forward and backward from psi.
   virtual Losses head_step(const HeadStep<T>& step) = 0;
@@ -57,7 +57,7 @@ class EncodedPolicy : public Policy<T> {
  private:
   PolicyShape shape_;
   std::unique_ptr<Encoder<T>> encoder_;
-  size_t behind_encoder_;  // where the head's parameters begin
+  size_t head_begin_;  // where the head's parameters begin
   Buffer<T> psi_, dpsi_;
 };
 

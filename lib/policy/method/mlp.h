@@ -1,7 +1,7 @@
 // The MLP baseline: one network for all pairs, told which by its input.
 //
 //   x = [psi / |psi|, e_env, e_task];  scores of the actions and their rewards each by a perceptron over x.
-//   The environment is told from f_env(psi / |psi|)^T e_env, the task from f_task(psi / |psi|)^T e_task.
+//   The environment is recognised by f_env(psi / |psi|)^T e_env, the task from f_task(psi / |psi|)^T e_task.
 #pragma once
 #include "nn/layers/perceptron.h"
 #include "policy/head/embedding_table.h"

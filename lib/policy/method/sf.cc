@@ -13,7 +13,7 @@ Sf<T>::Sf(const PolicyShape& shape)
       env_("embedding.env", shape.envs, shape.embedding, shape.normalise_embeddings, this->parameters_),
       task_("embedding.task", shape.tasks, shape.embedding, shape.normalise_embeddings, this->parameters_),
       phi_("phi", shape.feature, shape.head_hidden, shape.actions * shape.embedding, this->parameters_),
-      psi_("psi", inputs(), shape.head_hidden, shape.actions * shape.embedding, this->parameters_) {}
+      successor_("psi", inputs(), shape.head_hidden, shape.actions * shape.embedding, this->parameters_) {}
 
 template <class T>
 BatchNeeds Sf<T>::needs() const {
@@ -30,7 +30,7 @@ void Sf<T>::initialise_head(InitStream& stream, double embedding_sd, T* paramete
   env_.initialise(stream, embedding_sd, parameters);
   task_.initialise(stream, embedding_sd, parameters);
   phi_.initialise(stream, parameters);
-  psi_.initialise(stream, parameters);
+  successor_.initialise(stream, parameters);
 }
 
 template <class T>
@@ -46,24 +46,25 @@ void Sf<T>::values(const T* features, const T* w, T* values) const {
 }
 
 template <class T>
-double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi,
-                                  T* dpsi) const {
+double Sf<T>::temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* successor,
+                                  T* dsuccessor) const {
   const int n = batch.size, width = shape().embedding;
   const size_t row = size_t(shape().actions) * width;
   const auto unknown = std::count(batch.next, batch.next + n, int(StepBatch<T>::kUnknown));
   const double counted = std::max(1.0, double(n - unknown));
-  std::fill_n(dpsi, n * row, T(0));
+  std::fill_n(dsuccessor, n * row, T(0));
   double sum = 0;
   for (int i = 0; i < n; ++i) {
     const int next = batch.next[i];
     if (next == StepBatch<T>::kUnknown) continue;
     const size_t at = i * row + size_t(batch.taken[i]) * width;
-    const T* behind = next == StepBatch<T>::kTerminal ? nullptr : psi + next * row + size_t(batch.label[next]) * width;
+    const T* following =
+        next == StepBatch<T>::kTerminal ? nullptr : successor + next * row + size_t(batch.label[next]) * width;
     for (int c = 0; c < width; ++c) {
-      const T target = phi[at + c] + (behind ? T(discount) * behind[c] : T(0));
-      const T error = psi[at + c] - target;
+      const T target = phi[at + c] + (following ? T(discount) * following[c] : T(0));
+      const T error = successor[at + c] - target;
       sum += double(error) * error;
-      dpsi[at + c] = T(2 * error / (counted * width));
+      dsuccessor[at + c] = T(2 * error / (counted * width));
     }
   }
   return sum / (counted * width);
@@ -89,19 +90,19 @@ Losses Sf<T>::head_step(const HeadStep<T>& step) {
   T* x = x_.grow(size_t(n) * in);
   T* dx = dx_.grow(size_t(n) * in);
   T* dphi = dphi_.grow(n * row);
-  T* dpsi = dpsi_.grow(n * row);
+  T* dsuccessor = dsuccessor_.grow(n * row);
   T* dq = dq_.grow(size_t(n) * actions);
   env_.use(parameters);
   task_.use(parameters);
   for (int i = 0; i < n; ++i) make_input(feature + size_t(i) * d, batch.env[i], batch.task[i], x + size_t(i) * in);
   const T* phi = phi_.forward(parallel, n, feature, parameters);
-  const T* psi = psi_.forward(parallel, n, x, parameters);
-  for (int i = 0; i < n; ++i) values(psi + i * row, task_.row(batch.task[i]), logits + size_t(i) * actions);
+  const T* successor = successor_.forward(parallel, n, x, parameters);
+  for (int i = 0; i < n; ++i) values(successor + i * row, task_.row(batch.task[i]), logits + size_t(i) * actions);
 
   Losses losses;
   losses.env = losses.task = std::nan("");
   if (shape().sf_loss == SfLoss::kTemporalDifference && !batch.objective) {
-    losses.policy = temporal_difference(batch, options.discount, phi, psi, dpsi);
+    losses.policy = temporal_difference(batch, options.discount, phi, successor, dsuccessor);
   } else {
     losses.policy = shape().sf_loss == SfLoss::kPlannerQ && !batch.objective ? planner_distance(batch, logits, dq)
                                                                              : this->score_loss(step, dq);
@@ -111,8 +112,8 @@ Losses Sf<T>::head_step(const HeadStep<T>& step) {
       for (int a = 0; a < actions; ++a)
         for (int c = 0; c < width; ++c) {
           const size_t at = i * row + size_t(a) * width + c;
-          dpsi[at] = dq[size_t(i) * actions + a] * w[c];
-          dw[c] += dq[size_t(i) * actions + a] * psi[at];
+          dsuccessor[at] = dq[size_t(i) * actions + a] * w[c];
+          dw[c] += dq[size_t(i) * actions + a] * successor[at];
         }
     }
   }
@@ -130,7 +131,7 @@ Losses Sf<T>::head_step(const HeadStep<T>& step) {
     }
   }
   phi_.backward(parallel, feature, dphi, dfeature, true, parameters, gradient);
-  psi_.backward(parallel, x, dpsi, dx, false, parameters, gradient);
+  successor_.backward(parallel, x, dsuccessor, dx, false, parameters, gradient);
   for (int i = 0; i < n; ++i) {
     const T* from = dx + size_t(i) * in;
     for (int c = 0; c < d; ++c) dfeature[size_t(i) * d + c] += *from++;
@@ -145,7 +146,7 @@ template <class T>
 void Sf<T>::prepare_head(Parallel&, const T* parameters, const std::vector<std::pair<int, int>>& pairs) {
   env_.use(parameters);
   task_.use(parameters);
-  psi_.prepare_inference(parameters);
+  successor_.prepare_inference(parameters);
   pairs_ = pairs;
 }
 
@@ -153,15 +154,15 @@ template <class T>
 void Sf<T>::infer_head(int size, const T* feature, const int* pair, T* logits) const {
   const int d = shape().feature, in = inputs();
   const size_t row = size_t(shape().actions) * shape().embedding;
-  std::vector<T> x(size_t(size) * in), psi(size * row);
+  std::vector<T> x(size_t(size) * in), successor(size * row);
   Buffer<T> scratch;
   for (int i = 0; i < size; ++i) {
     const auto [env, task] = pairs_[pair[i]];
     make_input(feature + size_t(i) * d, env, task, x.data() + size_t(i) * in);
   }
-  psi_.infer(size, x.data(), psi.data(), scratch);
+  successor_.infer(size, x.data(), successor.data(), scratch);
   for (int i = 0; i < size; ++i)
-    values(psi.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape().actions);
+    values(successor.data() + i * row, task_.row(pairs_[pair[i]].second), logits + size_t(i) * shape().actions);
 }
 
 template class Sf<float>;

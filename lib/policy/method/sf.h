@@ -1,9 +1,10 @@
 // Successor features: a reward that is linear in features, and their discounted sum.
 //
-//   r(s, a) = phi(s, a)^T e_task,   psi(s, a; z) = phi(s, a) + gamma psi(s', a'; z),   Q_z(s, a) = psi(s, a; z)^T
+//   r(s, a) = phi(s, a)^T e_task,   sigma(s, a; z) = phi(s, a) + gamma sigma(s', a'; z),   Q_z(s, a) = sigma(s, a; z)^T
 //   e_task
-// phi is a perceptron over the state's feature, psi one over the feature, e_env and e_task; s' and a' are the next
-// state and the expert's action there. The policy takes the action of the highest Q. What psi is learned from: SfLoss.
+// phi is a perceptron over the state's feature psi(s), sigma one over psi(s), e_env and e_task; s' and a' are the next
+// state and the expert's action there. The policy takes the action of the highest Q. SfLoss says how sigma is learned.
+// Checkpoints call the tensors of sigma "psi", as the literature on successor features does.
 #pragma once
 #include "nn/layers/perceptron.h"
 #include "policy/head/embedding_table.h"
@@ -32,14 +33,15 @@ class Sf : public EncodedPolicy<T> {
   void make_input(const T* feature, int env, int task, T* x) const;
   // values [actions] = features [actions, embedding] w.
   void values(const T* features, const T* w, T* values) const;
-  // Mean square of a temporal difference; dpsi = its gradient. Targets are held fixed.
-  double temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* psi, T* dpsi) const;
+  // Mean square of a temporal difference; dsuccessor = its gradient. Targets are held fixed.
+  double temporal_difference(const StepBatch<T>& batch, double discount, const T* phi, const T* successor,
+                             T* dsuccessor) const;
   // Mean square of Q's distance from the planner's; dq = its gradient.
   double planner_distance(const StepBatch<T>& batch, const T* q, T* dq) const;
 
   EmbeddingTable<T> env_, task_;
-  Perceptron<T> phi_, psi_;
-  Buffer<T> x_, dx_, dphi_, dpsi_, dq_;
+  Perceptron<T> phi_, successor_;
+  Buffer<T> x_, dx_, dphi_, dsuccessor_, dq_;
   std::vector<std::pair<int, int>> pairs_;  // for inference
 };
 

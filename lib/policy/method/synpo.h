@@ -2,7 +2,7 @@
 //
 //   U(z) = sum_k alpha_k(z) Theta_k,  V(z) = sum_k beta_k(z) Theta_k,  z = (env, task)
 //   pi_z(a|s) = softmax_a(psi(s)^T U(z) phi(a) + b_a),   r_z(s, a) = psi(s)^T V(z) phi(a) + c_a
-//   x(s, a)_k = psi(s)^T Theta_k phi(a);   the environment is told from f_env(x)^T e_env, the task from f_task(x)^T
+//   x(s, a)_k = psi(s)^T Theta_k phi(a);   the environment is recognised by f_env(x)^T e_env, the task from f_task(x)^T
 //   e_task
 //
 // alpha, beta, f_env and f_task are dense layers with one hidden ReLU layer (Sections 4.1 and 4.3); theta and phi:

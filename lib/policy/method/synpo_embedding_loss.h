@@ -20,7 +20,7 @@ namespace synpo {
 
 class SynPoEmbeddingLoss : public EmbeddingLoss {
  public:
-  // What is kept of a step, in bytes.
+  // The bytes that are kept of a step.
   static size_t step_bytes(const PolicyShape& shape);
 
   // Rows of the embeddings that are marked as new are those to be learned; everything else is taken as it is in
@@ -44,7 +44,7 @@ class SynPoEmbeddingLoss : public EmbeddingLoss {
     int fresh() const { return int(rows.size()); }
     bool is_old(int row) const { return place[row] == fresh(); }
     std::vector<int> rows;   // the new ones
-    std::vector<int> place;  // of a row among them; behind the last for the old ones, which stand together as one class
+    std::vector<int> place;  // of a row among them; one more than the last for the old ones, which are one class
     EmbeddingTable<float> table;
     FrozenPerceptron<float> f;
     Packed<float> packed;  // the new rows, transposed
@@ -59,7 +59,7 @@ class SynPoEmbeddingLoss : public EmbeddingLoss {
     std::vector<float> old[kKinds];  // [size], log sum exp of the old ones' scores
     double apart[kKinds] = {};  // that minus the true one's score, summed over the steps; 0 where the true one is new
   };
-  // What a shard adds up.
+  // The sums of a shard.
   struct Part {
     double head[kHeads] = {}, kind[kKinds] = {};
     std::vector<float> dembedding[kKinds];  // [new, E]
