@@ -91,8 +91,8 @@ int body(int argc, char** argv) {
   if (!output) return 0;
 
   Matrix matrix;
-  matrix.extra_columns = {"temperature"};
   const std::string run = hex(checkpoint.weights_hash());
+  int64_t new_pairs = 0;
   for (size_t p = 0; p < pairs.size(); ++p) {
     const PairResult& r = results[p];
     matrix.has_part |= !rows[p].part.empty();
@@ -115,11 +115,20 @@ int body(int argc, char** argv) {
     row.reward = double(r.reward_cents) / 100;
     row.length = r.length;
     row.part = rows[p].part;
-    row.extra = {concat(temperature)};
+    row.temperature = temperature;
+    row.is_new = !model.knows(pairs[p]);
+    row.env_hash = hex(world.environments()[pairs[p].env].hash);
+    new_pairs += row.is_new;
     matrix.rows.push_back(row);
   }
   write_matrix(*output, matrix);
   output->finish();
+  if (new_pairs > 0 && !quiet)
+    std::fprintf(
+        stderr,
+        "synpo-eval: note: %lld of %zu pairs are new, not unseen: training met the environment or the task in no "
+        "pair\n",
+        (long long)new_pairs, pairs.size());
   return 0;
 }
 

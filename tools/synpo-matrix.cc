@@ -8,11 +8,6 @@
 
 namespace synpo {
 
-void add_bootstrap(Options& options, BootstrapPlan& plan, int64_t& seed) {
-  options.integer(0, "samples", "COUNT", "samples of the bootstrap", plan.samples, 100, 1000000)
-      .integer('s', "seed", "SEED", "seed of the bootstrap", seed, 0, INT64_MAX);
-}
-
 int matrix_summary(int argc, char** argv) {
   bool table = false, quiet = false;
   std::string output_path = "-";

@@ -82,7 +82,7 @@ const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme) 
   if (group < 0) return grey;
   const std::string& name = table.groups[group].name;
   if (table.by_part) return name == "Q" ? scheme.seen : name == "P" ? scheme.other : scheme.unseen;
-  return name == "seen" ? scheme.seen : scheme.unseen;
+  return name == "seen" ? scheme.seen : name == "new" ? scheme.other : scheme.unseen;
 }
 
 Rgb time_colour(double share) {

@@ -19,7 +19,7 @@ Rgb ramp_colour(const Ramp& ramp, double rate);
 
 struct Scheme {
   const char* name;
-  Ramp seen, unseen, other;  // `other` is for a third kind of cells: the pairs of part P
+  Ramp seen, unseen, other;  // `other` is for a third kind of cells: new pairs, or those of part P
 };
 
 // "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figures 6 and 8), "blue-red" (Figures 4

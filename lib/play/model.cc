@@ -12,6 +12,13 @@ namespace synpo {
 
 bool Model::is_seen(EnvTask pair) const { return std::find(seen.begin(), seen.end(), pair) != seen.end(); }
 
+bool Model::knows(EnvTask pair) const {
+  const auto any = [&](int EnvTask::*side) {
+    return std::any_of(seen.begin(), seen.end(), [&](const EnvTask& one) { return one.*side == pair.*side; });
+  };
+  return any(&EnvTask::env) && any(&EnvTask::task);
+}
+
 Model fresh_model(const std::string& method, const PolicyShape& shape, const InitOptions& options) {
   Model model;
   model.method = method;

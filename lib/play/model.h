@@ -23,6 +23,7 @@ struct Model {
   Buffer<float> parameters, statistics;
 
   bool is_seen(EnvTask pair) const;
+  bool knows(EnvTask pair) const;  // whether its environment and its task are in seen pairs: if not, it is new
 };
 
 // Fresh weights; the window is 1 and no pair is seen.

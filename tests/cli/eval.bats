@@ -39,6 +39,30 @@ setup() {
     [ "$(wc -l <got)" -eq 21 ]
 }
 
+@test "pairs of an environment or a task that training never met are new, not unseen, and eval says so" {
+    printf 'env\ttask\nmap1\tR-B\nmap1\tB-G\nmap2\tR-B\nmap2\tB-G\nmap3\tR-B\nmap1\tO-P\n' >p.tsv
+    head -n 4 p.tsv >three.tsv
+    synpo-gen-expert -p three.tsv -n 20 | synpo-train "${TINY[@]}" -p three.tsv -n 1 --strip >three.ckpt
+    synpo-eval -p p.tsv -n 1 <three.ckpt >got 2>note
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["task"], $at["seen"], $at["new"] }' got >rows
+    printf 'map1 R-B 1 0\nmap1 B-G 1 0\nmap2 R-B 1 0\nmap2 B-G 0 0\nmap3 R-B 0 1\nmap1 O-P 0 1\n' | cmp - rows
+    grep -q 'note: 2 of 6 pairs are new, not unseen' note
+    synpo-matrix summary got | grep -q '^unseen  *1 '
+    synpo-matrix summary got | grep -q '^new  *2 '
+    synpo-eval -q -p p.tsv -n 1 <three.ckpt 2>note | cmp - got
+    [ ! -s note ]
+    synpo-eval -q -p three.tsv -n 1 <three.ckpt >known
+    ! head -n 1 known | grep -qw new || complain "a column without a new pair"
+    synpo-eval -q -p p.tsv -n 1 --first-episode 1 <three.ckpt | synpo-matrix merge got - >merged
+    [ "$(awk -F '\t' 'NR > 1 && $12 == 2' merged | wc -l)" -eq 6 ]
+}
+
+@test "the matrix has the hash of each environment, as trajectories have it" {
+    synpo-eval -q -p two.tsv -n 1 --record r.jsonl <a.ckpt >got
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["env_hash"] }' got | sort -u >hashes
+    jq -r '.env + " " + .env_hash' r.jsonl | sort -u | cmp - hashes
+}
+
 @test "shards by --first-episode merge to the whole" {
     synpo-eval -q -p two.tsv -n 7 <a.ckpt >whole
     synpo-eval -q -p two.tsv -n 3 <a.ckpt >first

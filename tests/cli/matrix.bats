@@ -55,11 +55,17 @@ END
     grep -qxF '| unnamed |    3 | 90.0 ± 1.0 | 58.0 ± 1.0 |' markdown
     synpo-matrix table --format latex -b runs.tsv >latex
     grep -qxF 'unnamed & 3 & 90.0 $\pm$ 1.0 & 58.0 $\pm$ 1.0 \\' latex
-    synpo-matrix table -f tsv --subset all,unseen runs.tsv >tsv
+    synpo-matrix table -f tsv --subset seen,unseen runs.tsv >tsv
+    # Student's with two degrees of freedom, 0.9 +- 4.3027 * 0.01 / sqrt(3); Wilson's of 522 in 900 is the wider one.
     awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
-        function near(x, y) { return x - y < 1e-9 && y - x < 1e-9 }
-        NR == 3 { ok = $at["subset"] == "unseen" && near($at["mean"], 0.58) && near($at["sd"], 0.01) && $at["interval"] == "bootstrap" }
-        END { exit !(ok && NR == 3) }' tsv
+        function near(x, y) { return x - y < 1e-5 && y - x < 1e-5 }
+        NR == 2 { ok += $at["subset"] == "seen" && near($at["mean"], 0.9) && $at["interval"] == "student" &&
+            near($at["low"], 0.875159) && near($at["high"], 0.924841) }
+        NR == 3 { ok += $at["subset"] == "unseen" && near($at["mean"], 0.58) && near($at["sd"], 0.01) && $at["interval"] == "wilson" &&
+            near($at["low"], 0.547482) && near($at["high"], 0.611838) }
+        END { exit !(ok == 2 && NR == 3) }' tsv
+    synpo-matrix table -f tsv --pair-by-pair -s 7 --samples 500 runs.tsv >drawn
+    synpo-matrix table -f tsv --pair-by-pair -s 7 --samples 500 runs.tsv | cmp - drawn
     synpo-matrix table -s 1 runs.tsv | cmp - text
     fails 64 synpo-matrix table -f html runs.tsv
     fails 64 synpo-matrix table --subset sen runs.tsv
@@ -70,9 +76,61 @@ END
     for seed in 1 2 3; do by_hand | awk 'BEGIN { FS = OFS = "\t" } NR > 1 { $5 = 100 } { print }' | with seed=$seed; done |
         awk 'NR == 1 || !/^env\t/' >runs.tsv
     synpo-matrix table runs.tsv >text
-    grep -q '100.0 (3 alike)  *100.0  *99.8 to 100.0 w' text
+    grep -q '100.0 (3 alike)  *99.8 to 100.0 w  *100.0' text
     synpo-matrix summary runs.tsv >>text
     run ! grep -q -e '+- 0.0' text
+}
+
+@test "a rate lies in its interval as both are printed, and neither is rounded to 100.0" {
+    printf 'env\ttask\tseen\tepisodes\tsuccesses\ne\tt\t1\t40000\t39990\n' >m.tsv
+    for command in summary table rows; do
+        synpo-matrix $command m.tsv >text
+        grep -q ' 99.98 .* 99.95 to 99.99\| 99.98  *99.95 to 99.99' text
+    done
+}
+
+@test "temperatures are runs of their own: not pooled, not counted twice, named" {
+    by_hand | with run=r temperature=0 first_episode=0 >t0.tsv
+    by_hand | with run=r temperature=0.5 first_episode=100 >t1.tsv
+    by_hand | with run=r temperature=0.5 first_episode=0 >again.tsv
+    for other in t1 again; do
+        synpo-matrix summary t0.tsv $other.tsv >out
+        grep -q '^synpo.*\|^unnamed method, temperature 0: 1 run' out
+        grep -q '^unnamed method, temperature 0.5: 1 run' out
+        [ "$(grep -c '^all  *9  *732 of 900 ' out)" -eq 2 ]
+    done
+    synpo-matrix compare t0.tsv again.tsv >out
+    grep -q 'Actions were drawn at temperature 0 in A, 0.5 in B' out
+    synpo-matrix merge t0.tsv again.tsv >both.tsv
+    [ "$(wc -l <both.tsv)" -eq 19 ]
+    synpo-matrix filter --temperature 0.5 both.tsv | synpo-matrix summary | grep -q 'temperature 0.5: 1 run'
+    fails 65 synpo-matrix show both.tsv
+    says "rows of several temperatures ('0', '0.5')"
+    fails 65 synpo-matrix compare both.tsv t0.tsv
+    says "both.tsv: rows of several temperatures"
+    fails 64 synpo-matrix filter --temperature hot both.tsv
+    fails 65 synpo-matrix filter --temperature 2 both.tsv
+}
+
+@test "new pairs are a class of their own; other environments of the same name are noticed" {
+    by_hand | awk 'BEGIN { FS = OFS = "\t" } { $6 = NR == 1 ? "new" : $1 == "env3" && $3 == 0 ? 1 : 0 } { print }' >m.tsv
+    synpo-matrix summary m.tsv >out
+    grep -q '^unseen  *2  *120 of 200 ' out
+    grep -q '^new  *1  *60 of 100 ' out
+    synpo-matrix filter --new m.tsv | cut -f 9,10 >out
+    printf 'env\ttask\nenv3\ttask3\n' | cmp - out
+    synpo-matrix show m.tsv >out
+    grep -q '^new (n): 60.0 % of 100 episodes, 1 pair$' out
+    synpo-matrix table --subset unseen,new m.tsv | grep -q '^method  *runs  *unseen %  *95 % interval  *IQM  *new %'
+    fails 64 synpo-matrix filter --new --seen m.tsv
+    by_hand | with run=a env_hash=0000000000000001 >a.tsv
+    by_hand | with run=b env_hash=0000000000000002 >b.tsv
+    synpo-matrix summary a.tsv b.tsv 2>note >out
+    grep -q "the environment 'env1' is not the same in all runs" note
+    fails 65 synpo-matrix cols a.tsv b.tsv
+    fails 65 synpo-matrix show a.tsv b.tsv
+    fails 65 synpo-matrix compare a.tsv b.tsv
+    says "other environments go by the same names"
 }
 
 @test "compare: on common start states, with what was left out; two standard inputs are 64" {
@@ -178,5 +236,7 @@ END
     fails 64 synpo-matrix split -w any --envs 3
     says "--tasks is needed"
     fails 64 synpo-matrix split -w any --envs 3 --tasks a,a
+    fails 64 synpo-matrix split -w any --envs a,,b --tasks 2
+    says "an environment has no name"
     fails 64 synpo-matrix split -w any --envs 2000 --tasks 2000
 }

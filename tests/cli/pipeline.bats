@@ -21,7 +21,7 @@ load common
     make_inputs
     head -n 1 m.tsv >got
     printf '%s\t' run world window method seed updates eval_seed first_episode env task seen episodes successes wrong timeouts reward length |
-        sed 's/$/temperature\n/' | cmp - got
+        sed 's/$/temperature\tenv_hash\n/' | cmp - got
     synpo-matrix merge m.tsv >merged
     cmp m.tsv merged
     synpo-matrix summary -q --tsv m.tsv >summary.tsv

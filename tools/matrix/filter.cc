@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "format/pairs.h"
 #include "matrix/matrix.h"
 #include "stats/matrix/filter.h"
@@ -12,7 +13,7 @@ namespace synpo {
 int matrix_filter(int argc, char** argv) {
   RowFilter filter;
   std::string pairs_path, output_path = "-";
-  bool seen = false, unseen = false;
+  bool seen = false, unseen = false, fresh = false;
   const auto names_into = [](std::set<std::string>& names) {
     return [&names](const std::string& list) {
       for (const std::string& name : split_names(list)) names.insert(name);
@@ -30,6 +31,7 @@ int matrix_filter(int argc, char** argv) {
       .text('p', "pairs", "PAIRS", "of the pairs in this file", pairs_path)
       .flag(0, "seen", "of seen pairs", seen)
       .flag(0, "unseen", "of unseen pairs", unseen)
+      .flag(0, "new", "of pairs whose environment or task is new to training", fresh)
       .call(0, "part", "LIST", "of these parts, as in P or P,Q", names_into(filter.parts))
       .call('m', "method", "LIST", "of these methods", names_into(filter.methods))
       .call(0, "run-seed", "LIST", "of runs with these seeds",
@@ -40,12 +42,22 @@ int matrix_filter(int argc, char** argv) {
                 filter.seeds.insert(uint64_t(value));
               }
             })
+      .call(0, "temperature", "LIST", "of runs that acted at these temperatures",
+            [&](const std::string& list) {
+              for (const std::string& text : split_names(list)) {
+                double value = -1;
+                if (!parse_whole(text, value) || !(value >= 0))
+                  throw std::invalid_argument("expected numbers, at least 0");
+                filter.temperatures.insert(value);
+              }
+            })
       .flag(0, "not", "the other rows instead: those that do not fit", filter.inverted)
       .text('o', "output", "FILE", "where the matrix goes", output_path);
   const std::vector<std::string> files = options.parse(argc, argv, 0, kMostFiles);
-  if (seen && unseen) fail(Exit::kUsage, "give either --seen or --unseen");
-  filter.seen = !unseen;
-  filter.unseen = !seen;
+  if (seen + unseen + fresh > 1) fail(Exit::kUsage, "give either --seen or --unseen or --new");
+  if (seen) filter.standings = {Standing::kSeen};
+  if (unseen) filter.standings = {Standing::kUnseen};
+  if (fresh) filter.standings = {Standing::kNew};
   const Matrix matrix = read_matrices(files);
   if (options.given("pairs")) {
     // Unlike a name that was typed, a pair of a file need not be in this matrix.

@@ -5,15 +5,11 @@
 
 #include "base/cli/options.h"
 #include "base/files/io.h"
-#include "stats/bootstrap.h"
 #include "stats/matrix/merge.h"
 
 namespace synpo {
 
 constexpr int kMostFiles = 100000;
-
-// Adds --samples and -s.
-void add_bootstrap(Options& options, BootstrapPlan& plan, int64_t& seed);
 
 int matrix_split(int argc, char** argv);
 int matrix_summary(int argc, char** argv);

@@ -1,4 +1,5 @@
 // synpo-matrix table: methods against seen and unseen pairs, with means and standard deviations over runs.
+#include <optional>
 #include <stdexcept>
 
 #include "base/error.h"
@@ -14,10 +15,10 @@ int matrix_table(int argc, char** argv) {
   const MeasureKind* measure = &find_measure("success");
   BootstrapPlan plan;
   int64_t seed = 1;
-  bool brief = false;
+  bool brief = false, pair_by_pair = false;
   Options options(
       "synpo-matrix table", "[OPTION]... [MATRIX]...",
-      "A line per method: mean and sd over runs, interquartile mean and interval, for seen and unseen pairs.");
+      "A line per method: mean and sd over runs, interval and interquartile mean, for seen and unseen pairs.");
   options
       .call('f', "format", "FORMAT", "text, tsv, markdown or latex [text]",
             [&](const std::string& name) {
@@ -25,21 +26,23 @@ int matrix_table(int argc, char** argv) {
                 throw std::invalid_argument("expected text, tsv, markdown or latex");
               format = name;
             })
-      .call(0, "subset", "LIST", "which columns, of seen, unseen, all, P, Q, rest [seen,unseen]",
+      .call(0, "subset", "LIST", "which columns, of seen, unseen, new, all, P, Q, rest [seen,unseen]",
             [&](const std::string& list) {
               subsets = split_names(list);
               for (const std::string& name : subsets)
-                if (!is_subset(name)) throw std::invalid_argument("expected some of seen, unseen, all, P, Q, rest");
+                if (!is_subset(name))
+                  throw std::invalid_argument("expected some of seen, unseen, new, all, P, Q, rest");
             })
       .call(0, "measure", "NAME", "success, reward, length, wrong or timeouts [success]",
             [&](const std::string& name) { measure = &find_measure(name); })
       .flag('b', "brief", "mean and sd alone", brief)
-      .flag(0, "pair-by-pair", "the bootstrap draws runs in each pair on its own", plan.pair_by_pair);
-  add_bootstrap(options, plan, seed);
-  options.text('o', "output", "FILE", "where the table goes", output_path);
+      .flag(0, "pair-by-pair", "the interval is a bootstrap's, with runs drawn in each pair on its own", pair_by_pair)
+      .integer(0, "samples", "COUNT", "samples of that bootstrap", plan.samples, 100, 1000000)
+      .integer('s', "seed", "SEED", "its seed", seed, 0, INT64_MAX)
+      .text('o', "output", "FILE", "where the table goes", output_path);
   const Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles));
   plan.seed = uint64_t(seed);
-  const MethodTable table = tabulate(matrix, subsets, *measure, plan);
+  const MethodTable table = tabulate(matrix, subsets, *measure, pair_by_pair ? std::optional(plan) : std::nullopt);
   Output output(output_path);
   if (format == "tsv")
     write_method_table(output, table);

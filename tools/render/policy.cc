@@ -61,7 +61,8 @@ int policy(int argc, char** argv) {
     stages.push_back(each);
     style.caption += concat(style.caption.empty() ? "" : ". ", "Stage ", number, ": ", history_text(remembered));
   }
-  if (style.title.empty()) style.title = face->name(pair) + (model.is_seen(pair) ? " (seen)" : " (unseen)");
+  if (style.title.empty())
+    style.title = face->name(pair) + (model.is_seen(pair) ? " (seen)" : model.knows(pair) ? " (unseen)" : " (new)");
   style.caption = concat(model.method, ", ", model.updates, " updates. ", style.caption);
   finish(output, face->draw_policy(pair, stages, style, Font(picture.font)));
   return 0;

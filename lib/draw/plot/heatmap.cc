@@ -1,5 +1,7 @@
 #include "draw/plot/heatmap.h"
 
+#include <optional>
+
 #include "draw/plot/dendrogram.h"
 #include "draw/plot/heatmap_legend.h"
 
@@ -44,10 +46,11 @@ std::vector<bool> cells_that_name_parts(const HeatTable& table) {
   return names;
 }
 
-void draw_cell(Canvas& canvas, const Box& box, const HeatCell& cell, const Ramp& ramp, const HeatmapLayout& layout,
-               const std::string& part = "") {
-  const Rgb ground = cell.evaluated() ? ramp_colour(ramp, cell.rate()) : kPaper;
-  if (cell.evaluated())
+// Without a rate: not evaluated.
+void draw_cell(Canvas& canvas, const Box& box, std::optional<double> rate, const Ramp& ramp,
+               const HeatmapLayout& layout, const std::string& part = "") {
+  const Rgb ground = rate ? ramp_colour(ramp, *rate) : kPaper;
+  if (rate)
     canvas.fill(box, ground);
   else if (layout.gap > 0)
     draw_empty_cell(canvas, box, layout.pixels(0.5));
@@ -55,10 +58,9 @@ void draw_cell(Canvas& canvas, const Box& box, const HeatCell& cell, const Ramp&
   if (!part.empty())
     canvas.text(box.x + inset, box.y + inset, canvas.font().fitted(part, part_size, box.width - 2 * inset), part_size,
                 ink_on(ground));
-  if (cell.evaluated() && layout.value_size > 0)
-    canvas.text(box.x + box.width / 2, box.y + box.height / 2 + (part.empty() ? 0 : layout.pixels(3)),
-                rate_text(cell.successes, cell.episodes), layout.value_size, ink_on(ground), Across::kCentre,
-                Upright::kMiddle);
+  if (rate && layout.value_size > 0)
+    canvas.text(box.x + box.width / 2, box.y + box.height / 2 + (part.empty() ? 0 : layout.pixels(3)), rate_text(*rate),
+                layout.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
 }
 
 void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const HeatmapLayout& layout,
@@ -69,8 +71,8 @@ void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const
   for (int i = 0; i < int(table.cells.size()); ++i) {
     const HeatCell& cell = table.cells[i];
     const Box box = {matrix.x + i % envs * layout.cell, matrix.y + i / envs * layout.cell, side, side};
-    draw_cell(canvas, box, cell, group_ramp(table, cell.group, scheme), layout,
-              named[i] ? table.parts[cell.part].name : "");
+    draw_cell(canvas, box, cell.evaluated() ? std::optional(cell.rate()) : std::nullopt,
+              group_ramp(table, cell.group, scheme), layout, named[i] ? table.parts[cell.part].name : "");
   }
 }
 
@@ -84,8 +86,8 @@ void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::P
     const Ramp& ramp = group_ramp(table, margin.group, scheme);
     const int offset = layout.margin_space + int(i) * layout.margin_cell, x = matrix.right() + offset,
               y = matrix.bottom() + offset;
-    const auto draw = [&](const Box& box, const HeatCell& cell) {
-      if (cell.evaluated()) draw_cell(canvas, box, cell, ramp, layout);
+    const auto draw = [&](const Box& box, const HeatMean& line) {
+      if (line.evaluated()) draw_cell(canvas, box, line.mean(), ramp, layout);
     };
     for (size_t task = 0; task < margin.tasks.size(); ++task)
       draw({x, matrix.y + int(task) * layout.cell, across, side}, margin.tasks[task]);

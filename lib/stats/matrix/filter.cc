@@ -4,6 +4,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "format/tsv.h"
 
 namespace synpo {
@@ -16,9 +17,13 @@ bool holds(const std::set<Value>& set, const Value& value) {
 
 std::string shown(const std::string& name) { return quoted(name); }
 std::string shown(uint64_t seed) { return std::to_string(seed); }
+std::string shown(double temperature) { return shortest(temperature); }
 std::string shown(const std::pair<std::string, std::string>& pair) {
   return quoted(pair.first) + ", " + quoted(pair.second);
 }
+
+// -1, which none is, where the row does not say it.
+double temperature_of(const MatrixRow& row) { return row.temperature.value_or(-1); }
 
 template <class Value, class Of>
 void check_names(const std::set<Value>& named, const Matrix& matrix, const char* what, Of of) {
@@ -33,7 +38,8 @@ void check_names(const std::set<Value>& named, const Matrix& matrix, const char*
 
 bool RowFilter::fits(const MatrixRow& row) const {
   return holds(envs, row.env) && holds(tasks, row.task) && holds(methods, row.method) && holds(parts, row.part) &&
-         holds(seeds, row.seed) && holds(pairs, {row.env, row.task}) && (row.seen ? seen : unseen);
+         holds(seeds, row.seed) && holds(pairs, {row.env, row.task}) && holds(standings, row.standing()) &&
+         holds(temperatures, temperature_of(row));
 }
 
 Matrix filter_rows(const Matrix& matrix, const RowFilter& filter) {
@@ -43,6 +49,7 @@ Matrix filter_rows(const Matrix& matrix, const RowFilter& filter) {
   check_names(filter.parts, matrix, "part", [](const MatrixRow& row) { return row.part; });
   check_names(filter.seeds, matrix, "seed", [](const MatrixRow& row) { return row.seed; });
   check_names(filter.pairs, matrix, "pair", [](const MatrixRow& row) { return std::pair(row.env, row.task); });
+  check_names(filter.temperatures, matrix, "temperature", temperature_of);
   Matrix left;
   left.has_part = matrix.has_part;
   left.extra_columns = matrix.extra_columns;

@@ -15,7 +15,8 @@ struct RowFilter {
   std::set<std::string> envs, tasks, methods, parts;
   std::set<std::pair<std::string, std::string>> pairs;  // (env, task)
   std::set<uint64_t> seeds;
-  bool seen = true, unseen = true;
+  std::set<double> temperatures;
+  std::set<Standing> standings;
   bool inverted = false;  // keeps the rows that do not fit
   bool fits(const MatrixRow& row) const;
 };

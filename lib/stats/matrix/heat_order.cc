@@ -26,14 +26,17 @@ Names united(const std::vector<HeatPanel>& panels, Names HeatTable::*names) {
 
 // Gives every panel the groups, or parts, of any; `index` is what a cell calls them by.
 void unite_groups(std::vector<HeatPanel>& panels, std::vector<HeatGroup> HeatTable::*groups, int HeatCell::*index) {
-  std::map<std::string, int> place;
+  const auto new_last = [](const std::string& a, const std::string& b) {
+    return std::pair(a == "new", a) < std::pair(b == "new", b);
+  };
+  std::map<std::string, int, decltype(new_last)> place(new_last);
   for (const HeatPanel& panel : panels)
     for (const HeatGroup& group : panel.table.*groups) place[group.name];
   int next = 0;
   for (auto& [name, at] : place) at = next++;
   for (HeatPanel& panel : panels) {
     std::vector<HeatGroup> all;
-    for (const auto& [name, at] : place) all.push_back({name});
+    for (const auto& [name, at] : place) all.emplace_back(name);
     for (const HeatGroup& group : panel.table.*groups) all[place[group.name]] = group;
     for (HeatCell& cell : panel.table.cells)
       if (cell.*index >= 0) cell.*index = place[(panel.table.*groups)[cell.*index].name];
@@ -80,12 +83,9 @@ Names naturally(Names names) {
 }
 
 double mean_rate(const Line& line) {
-  double episodes = 0, successes = 0;
-  for (const HeatCell* cell : line) {
-    episodes += double(cell->episodes);
-    successes += double(cell->successes);
-  }
-  return episodes > 0 ? successes / episodes : -1;
+  HeatMean mean;
+  for (const HeatCell* cell : line) mean.add(*cell);
+  return mean.pairs > 0 ? mean.mean() : -1;
 }
 
 double distance(const Line& a, const Line& b) {
@@ -181,10 +181,8 @@ std::vector<HeatMargin> margins_of(const HeatTable& table) {
       for (size_t env = 0; env < table.envs.size(); ++env) {
         const HeatCell& cell = table.at(task, env);
         if (group >= 0 && cell.group != group) continue;
-        for (HeatCell* sum : {&margin.tasks[task], &margin.envs[env]}) {
-          sum->episodes += cell.episodes;
-          sum->successes += cell.successes;
-        }
+        margin.tasks[task].add(cell);
+        margin.envs[env].add(cell);
       }
     margins.push_back(std::move(margin));
   }

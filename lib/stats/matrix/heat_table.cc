@@ -5,7 +5,9 @@
 #include <set>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "stats/matrix/heat_table.h"
+#include "stats/matrix/runs.h"
 
 namespace synpo {
 namespace {
@@ -47,25 +49,28 @@ std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTabl
   return out;
 }
 
-void count(HeatGroup& group, const HeatCell& cell) {
-  ++group.pairs;
-  group.episodes += cell.episodes;
-  group.successes += cell.successes;
-}
-
 }  // namespace
+
+void HeatMean::add(const HeatCell& cell) {
+  if (!cell.evaluated()) return;
+  ++pairs;
+  episodes += cell.episodes;
+  successes += cell.successes;
+  rates += cell.rate();
+}
 
 HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_part) {
   std::vector<const MatrixRow*> rows;
   std::set<std::string> methods;
   std::set<std::pair<std::string, int64_t>> worlds;  // with the window
   Names envs, tasks;
-  std::set<std::string> part_names;
+  std::set<std::string> part_names, temperatures;
   for (const MatrixRow& row : matrix.rows) {
     if (!method.empty() && row.method != method) continue;
     rows.push_back(&row);
     methods.insert(row.method);
     worlds.emplace(row.world, row.window);
+    temperatures.insert(row.temperature ? shortest(*row.temperature) : "not known");
     envs.add(row.env);
     tasks.add(row.task);
     if (!row.part.empty()) part_names.insert(row.part);
@@ -78,6 +83,11 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
     for (const auto& [world, window] : worlds) names.insert(concat(world, " with window ", window));
     fail(Exit::kData, "rows of several worlds (", joined(names), "): draw them one by one");
   }
+  if (temperatures.size() > 1)
+    fail(Exit::kData, "rows of several temperatures (", joined(temperatures), "): draw them one by one");
+  if (const std::string env = mixed_environment(rows); !env.empty())
+    fail(Exit::kData, "the environment ", quoted(env),
+         " is not the same in all rows (env_hash): other ones go by its name, draw the runs one by one");
   if (by_part && part_names.empty()) fail(Exit::kData, "no column part to colour by");
   if (const size_t side = std::max(tasks.list.size(), envs.list.size()); side > kMostHeatNames)
     fail(Exit::kData, side, tasks.list.size() == side ? " tasks" : " environments", ": expected at most ",
@@ -91,21 +101,26 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   table.tasks = tasks.list;
   table.cells.resize(envs.list.size() * tasks.list.size());
   table.by_part = by_part;
-  for (const std::string& name : part_names) table.parts.push_back({name});
-  std::vector<HeatGroup> groups = {{"seen"}, {"unseen"}};
+  for (const std::string& name : part_names) table.parts.emplace_back(name);
+  std::vector<HeatGroup> groups;
   if (by_part) {
     groups = table.parts;
-    groups.push_back({"unnamed"});
+    groups.emplace_back("unnamed");
+  } else {
+    for (const Standing standing : {Standing::kSeen, Standing::kUnseen, Standing::kNew})
+      groups.emplace_back(name_of(standing));
   }
   for (const MatrixRow* row : rows) {
     HeatCell& cell = table.cells[tasks.place[row->task] * envs.list.size() + envs.place[row->env]];
     const int part = row->part.empty() ? -1 : int(std::distance(part_names.begin(), part_names.find(row->part)));
-    const int group = !by_part ? (row->seen ? 0 : 1) : part >= 0 ? part : int(groups.size()) - 1;
-    const auto differs = [&](const char* how) {
+    const int group = !by_part ? int(row->standing()) : part >= 0 ? part : int(groups.size()) - 1;
+    const auto differs = [&](const std::string& how) {
       fail(Exit::kData, "the pair ", quoted(row->env), " ", quoted(row->task), " ", how, ": draw the runs one by one");
     };
     if (cell.group >= 0 && cell.part != part) differs("is in different parts in two rows");
-    if (cell.group >= 0 && cell.group != group) differs("is seen in one row and unseen in another");
+    if (cell.group >= 0 && cell.group != group)
+      differs(by_part ? "is in a part in one row and in none in another"
+                      : concat("is ", groups[cell.group].name, " in one row and ", groups[group].name, " in another"));
     cell.group = group;
     cell.part = part;
     cell.episodes += row->episodes;
@@ -116,9 +131,8 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   for (const HeatCell& cell : table.cells) {
     if (cell.group < 0) continue;
     occurs[cell.group] = true;
-    if (!cell.evaluated()) continue;
-    count(groups[cell.group], cell);
-    if (cell.part >= 0) count(table.parts[cell.part], cell);
+    groups[cell.group].add(cell);
+    if (cell.part >= 0) table.parts[cell.part].add(cell);
   }
   std::vector<int> renumbered(groups.size(), -1);
   for (size_t i = 0; i < groups.size(); ++i)
@@ -132,10 +146,12 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   return table;
 }
 
-std::string rate_text(int64_t successes, int64_t episodes) {
-  int64_t hundredths = std::llround(100.0 * double(successes) / double(episodes));
-  if (successes > 0) hundredths = std::max<int64_t>(hundredths, 1);
-  if (successes < episodes) hundredths = std::min<int64_t>(hundredths, 99);
+std::string rate_text(int64_t successes, int64_t episodes) { return rate_text(double(successes) / double(episodes)); }
+
+std::string rate_text(double rate) {
+  int64_t hundredths = std::llround(100.0 * rate);
+  if (rate > 0) hundredths = std::max<int64_t>(hundredths, 1);
+  if (rate < 1) hundredths = std::min<int64_t>(hundredths, 99);
   char text[16];
   std::snprintf(text, sizeof text, "%d.%02d", int(hundredths / 100), int(hundredths % 100));
   return text;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "format/matrix.h"
@@ -20,11 +21,20 @@ struct HeatCell {
   double rate() const { return double(successes) / double(episodes); }
 };
 
-// A kind of pairs with a mean of its own: seen and unseen, or a part.
-struct HeatGroup {
-  std::string name;
+// A mean of pairs' rates, every pair alike.
+struct HeatMean {
   int64_t pairs = 0, episodes = 0, successes = 0;  // of the pairs evaluated
-  double rate() const { return double(successes) / double(episodes); }
+  double rates = 0;                                // their sum
+  void add(const HeatCell& cell);                  // nothing where the cell was not evaluated
+  bool evaluated() const { return pairs > 0; }
+  double mean() const { return rates / double(pairs); }
+  double rate() const { return double(successes) / double(episodes); }  // over all episodes together
+};
+
+// A kind of pairs with a mean of its own: seen, unseen and new, or a part.
+struct HeatGroup : HeatMean {
+  std::string name;
+  HeatGroup(std::string its_name) : name(std::move(its_name)) {}
 };
 
 struct HeatTable {
@@ -38,8 +48,9 @@ struct HeatTable {
 };
 
 // Sums the rows of each pair over runs and shards. Names come as they appear first. `method` empty: all rows. Throws
-// kData when the rows left are of several methods or worlds, when a pair is seen in one row and unseen in another (or
-// in two parts), when no row is left, for `by_part` without parts, and for more names or cells than the above.
+// kData when the rows left are of several methods, worlds or temperatures, when other environments go by one name, when
+// a pair is seen in one row and unseen or new in another (or in two parts), when no row is left, for `by_part` without
+// parts, and for more names or cells than the above.
 HeatTable pool_matrix(const Matrix& matrix, const std::string& method = "", bool by_part = false);
 
 // How tasks or environments are ordered.
@@ -75,12 +86,13 @@ HeatFigure arrange(std::vector<HeatPanel> panels, const std::vector<std::string>
 // several.
 struct HeatMargin {
   std::string name;
-  int group;                          // -1: all pairs
-  std::vector<HeatCell> tasks, envs;  // pooled
+  int group;  // -1: all pairs
+  std::vector<HeatMean> tasks, envs;
 };
 std::vector<HeatMargin> margins_of(const HeatTable& table);
 
 // "0.83"; 1.00 and 0.00 only where all or none succeeded.
 std::string rate_text(int64_t successes, int64_t episodes);
+std::string rate_text(double rate);
 
 }  // namespace synpo

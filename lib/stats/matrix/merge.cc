@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
 
 #include "base/error.h"
 
@@ -37,6 +38,7 @@ class Merger {
     matrix.has_part = has_part_;
     matrix.extra_columns = extra_;
     for (std::vector<Placed>& pair : pairs_) {
+      complete(pair);
       std::stable_sort(pair.begin(), pair.end(), [](const Placed& a, const Placed& b) {
         return std::tie(a.row.eval_seed, a.row.first_episode) < std::tie(b.row.eval_seed, b.row.first_episode);
       });
@@ -66,16 +68,30 @@ class Merger {
   }
 
   void add(Placed placed) {
-    const std::string run = run_key(placed.row);
-    const auto [known, fresh_run] = first_of_run_.try_emplace(run, placed);
-    if (!fresh_run) check_run(known->second, placed);
-    const auto [it, fresh_pair] =
-        pair_of_.try_emplace(run + '\t' + placed.row.env + '\t' + placed.row.task, pairs_.size());
-    if (fresh_pair)
-      pairs_.emplace_back();
-    else
-      check_pair(pairs_[it->second].front(), placed);
-    pairs_[it->second].push_back(std::move(placed));
+    const std::string training = training_key(placed.row), pair = '\t' + placed.row.env + '\t' + placed.row.task;
+    check_training(first_of_training_.try_emplace(training, placed).first->second, placed);
+    if (!placed.row.env_hash.empty()) {
+      const Placed& other = first_of_env_.try_emplace(training + '\t' + placed.row.env, placed).first->second;
+      same(other, placed, "env_hash", other.row.env_hash, placed.row.env_hash);
+    }
+    if (placed.row.is_new) new_.insert(training + pair);
+    const size_t at = pair_of_run_.try_emplace(run_key(placed.row) + pair, pairs_.size()).first->second;
+    if (at == pairs_.size()) pairs_.emplace_back();
+    const auto [first, fresh] = pair_of_training_.try_emplace(training + pair, at);
+    if (!fresh) check_pair(pairs_[first->second].front(), placed);
+    pairs_[at].push_back(std::move(placed));
+  }
+
+  // What some sources say of the environment and of the pair, in the rows of those that do not.
+  void complete(std::vector<Placed>& pair) const {
+    const MatrixRow& one = pair.front().row;
+    const std::string training = training_key(one), env = training + '\t' + one.env;
+    const auto hash = first_of_env_.find(env);
+    const bool is_new = new_.contains(env + '\t' + one.task);
+    for (Placed& placed : pair) {
+      if (hash != first_of_env_.end()) placed.row.env_hash = hash->second.row.env_hash;
+      placed.row.is_new = is_new;
+    }
   }
 
   std::string place(const Placed& placed) const { return concat(sources_[placed.source].name, " line ", placed.line); }
@@ -87,7 +103,7 @@ class Merger {
          " as in ", place(a), ", a row of the same run");
   }
 
-  void check_run(const Placed& a, const Placed& b) const {
+  void check_training(const Placed& a, const Placed& b) const {
     same(a, b, "world", a.row.world, b.row.world);
     same(a, b, "window", a.row.window, b.row.window);
     same(a, b, "method", a.row.method, b.row.method);
@@ -115,18 +131,26 @@ class Merger {
     return one.wrong + one.timeouts > 0 && !other.knows_failures();
   }
 
+  // Whether the sums can be read again.
+  static bool fits(const MatrixRow& one, const MatrixRow& other) {
+    return one.episodes + other.episodes <= kMatrixCount && one.length + other.length <= kMatrixCount &&
+           !(std::abs(one.reward + other.reward) > kMatrixReward);
+  }
+
   static bool follows(const MatrixRow& before, const MatrixRow& row) {
-    return before.eval_seed == row.eval_seed && before.first_episode + before.episodes == row.first_episode &&
-           before.extra == row.extra && before.knows_length() == row.knows_length() &&
-           before.knows_reward() == row.knows_reward() && !hides_failures(before, row) && !hides_failures(row, before);
+    return fits(before, row) && before.eval_seed == row.eval_seed &&
+           before.first_episode + before.episodes == row.first_episode && before.extra == row.extra &&
+           before.knows_length() == row.knows_length() && before.knows_reward() == row.knows_reward() &&
+           !hides_failures(before, row) && !hides_failures(row, before);
   }
 
   std::vector<MatrixSource>& sources_;
   std::vector<std::string> extra_;
   bool has_part_ = false;
-  std::unordered_map<std::string, Placed> first_of_run_;
-  std::unordered_map<std::string, size_t> pair_of_;
-  std::vector<std::vector<Placed>> pairs_;  // a run's pair each
+  std::unordered_map<std::string, Placed> first_of_training_, first_of_env_;
+  std::unordered_set<std::string> new_;  // pairs that are new to a training, as some source says
+  std::unordered_map<std::string, size_t> pair_of_run_, pair_of_training_;  // places in pairs_; the first of a training
+  std::vector<std::vector<Placed>> pairs_;                                  // a run's pair each
 };
 
 }  // namespace

@@ -14,9 +14,11 @@ struct MatrixSource {
 
 // One matrix of all rows. Within a run, eval_seed and pair, rows whose episodes follow one another are added up, rows
 // with a gap between them, with different values in unknown columns, or of which one says what the other does not
-// (MatrixRow) stay apart, and rows that share an episode are refused (kData, both places named). Rows of one run that
-// disagree about world, window, method, seed or updates, or about seen or part of a pair, are refused as well. Pairs
-// keep the order of their first appearance; a pair's rows are sorted by eval_seed and first episode, so the sums do not
+// (MatrixRow) stay apart, and so do rows whose sums would be more than is read (kMatrixCount, kMatrixReward); rows that
+// share an episode are refused (kData, both places named). Runs of one training that disagree about world, window,
+// method, seed or updates, about an environment's hash, or about seen or part of a pair, are refused as well. What a
+// source does not say of an environment's hash, or of whether a pair is new, is taken from those that do. Pairs keep
+// the order of their first appearance; a pair's rows are sorted by eval_seed and first episode, so the sums do not
 // depend on the order of the sources. Unknown columns are united; a source without one has empty fields there.
 Matrix merge_matrices(std::vector<MatrixSource> sources);
 

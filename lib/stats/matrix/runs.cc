@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "stats/matrix/merge.h"
 
 namespace synpo {
@@ -42,6 +43,12 @@ std::vector<uint64_t> Group::seeds() const {
   return all;
 }
 
+std::pair<int64_t, int64_t> Group::updates() const {
+  const auto [least, most] =
+      std::minmax_element(runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.updates < b.updates; });
+  return {least->updates, most->updates};
+}
+
 std::vector<Group> gather(const Matrix& matrix) {
   struct Place {
     size_t group, run;
@@ -50,55 +57,68 @@ std::vector<Group> gather(const Matrix& matrix) {
   std::unordered_map<std::string, size_t> group_at, pair_at;
   std::unordered_map<std::string, Place> run_at;
   for (const MatrixRow& row : matrix.rows) {
-    const std::string group_key = row.world + '\t' + std::to_string(row.window) + '\t' + row.method;
+    const std::string group_key =
+        concat(row.world, '\t', row.window, '\t', row.method, '\t', row.temperature ? shortest(*row.temperature) : "");
     const auto [at_group, fresh_group] = group_at.try_emplace(group_key, groups.size());
-    if (fresh_group) groups.push_back({row.world, row.method, row.window, matrix.has_part, {}});
+    if (fresh_group) groups.push_back({row.world, row.method, row.window, row.temperature, false, {}});
     Group& group = groups[at_group->second];
+    group.parts |= !row.part.empty();
     const std::string run_name = group_key + '\n' + run_key(row);
     const auto [at_run, fresh_run] = run_at.try_emplace(run_name, Place{at_group->second, group.runs.size()});
     if (fresh_run) group.runs.push_back({row.seed, row.updates, {}});
     Run& run = group.runs[at_run->second.run];
     const auto [at_pair, fresh_pair] =
         pair_at.try_emplace(run_name + '\n' + row.env + '\t' + row.task, run.pairs.size());
-    if (fresh_pair) run.pairs.push_back({row.env, row.task, row.seen, row.part, {}});
+    if (fresh_pair) run.pairs.push_back({row.env, row.task, row.standing(), row.part, {}});
     run.pairs[at_pair->second].tally.add(row);
   }
   return groups;
 }
 
-std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates,
-                    int64_t most_updates, const std::vector<uint64_t>& seeds) {
-  std::string text = method.empty() ? "unnamed method" : method;
-  if (!world.empty()) text += concat(" on ", world, ", window ", window);
-  if (most_updates > 0) {
-    text += concat(", ", least_updates);
-    if (most_updates > least_updates) text += concat(" to ", most_updates);
+std::string heading(const Group& group) {
+  const auto [least, most] = group.updates();
+  std::string text = group.method.empty() ? "unnamed method" : group.method;
+  if (!group.world.empty()) text += concat(" on ", group.world, ", window ", group.window);
+  if (most > 0) {
+    text += concat(", ", least);
+    if (most > least) text += concat(" to ", most);
     text += " updates";
   }
+  if (group.temperature) text += ", temperature " + shortest(*group.temperature);
+  const std::vector<uint64_t> seeds = group.seeds();
   text += concat(": ", seeds.size(), seeds.size() == 1 ? " run (seed" : " runs (seeds");
   for (size_t i = 0; i < seeds.size() && i < 20; ++i) text += concat(' ', seeds[i]);
   return text + (seeds.size() > 20 ? " ...)" : ")");
 }
 
-std::string heading(const Group& group) {
-  int64_t least = group.runs[0].updates, most = least;
-  for (const Run& run : group.runs) {
-    least = std::min(least, run.updates);
-    most = std::max(most, run.updates);
-  }
-  return heading(group.method, group.world, group.window, least, most, group.seeds());
+std::string mixed_environment(const std::vector<const MatrixRow*>& rows) {
+  std::unordered_map<std::string, const std::string*> hash_of;
+  for (const MatrixRow* row : rows)
+    if (!row->env_hash.empty() && *hash_of.try_emplace(row->env, &row->env_hash).first->second != row->env_hash)
+      return row->env;
+  return "";
+}
+
+std::string mixed_environment(const Matrix& matrix) {
+  std::vector<const MatrixRow*> rows;
+  for (const MatrixRow& row : matrix.rows) rows.push_back(&row);
+  return mixed_environment(rows);
+}
+
+const std::vector<std::string>& subset_names() {
+  static const std::vector<std::string> names = {"seen", "unseen", "new", "all", "P", "Q", "rest"};
+  return names;
 }
 
 bool is_subset(const std::string& name) {
-  return name == "seen" || name == "unseen" || name == "all" || name == "P" || name == "Q" || name == "rest";
+  return std::find(subset_names().begin(), subset_names().end(), name) != subset_names().end();
 }
 
-bool belongs(const PairTally& pair, const std::string& subset) {
-  if (subset == "all") return true;
-  if (subset == "seen") return pair.seen;
-  if (subset == "unseen") return !pair.seen;
-  return pair.part == subset;
+bool belongs(Standing standing, const std::string& part, const std::string& subset) {
+  return subset == "all" || subset == name_of(standing) || subset == part;
 }
+
+bool belongs(const PairTally& pair, const std::string& subset) { return belongs(pair.standing, pair.part, subset); }
 
 const std::vector<MeasureKind>& measure_kinds() {
   static const std::vector<MeasureKind> kinds = {

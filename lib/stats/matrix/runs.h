@@ -1,7 +1,9 @@
 // A success matrix sorted into methods, runs and pairs, and the measures that can be taken of a pair.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "format/matrix.h"
@@ -20,7 +22,7 @@ struct Tally {
 
 struct PairTally {
   std::string env, task;
-  bool seen;
+  Standing standing;
   std::string part;
   Tally tally;
   std::string name() const { return env + '\t' + task; }
@@ -32,26 +34,32 @@ struct Run {
   std::vector<PairTally> pairs;  // each once
 };
 
-// The runs of one method in one world with one window.
+// The runs of one method in one world with one window, acting at one temperature.
 struct Group {
   std::string world, method;
   int64_t window;
-  bool parts;  // the matrix has the column
+  std::optional<double> temperature;
+  bool parts;  // some of its rows name one
   std::vector<Run> runs;
   std::vector<uint64_t> seeds() const;
+  std::pair<int64_t, int64_t> updates() const;  // the fewest and the most of a run
 };
 
 // Groups in the order of their first row, and so with runs and pairs. Rows are taken as they are: merge_matrices first
 // keeps double counting out.
 std::vector<Group> gather(const Matrix& matrix);
 
-// "synpo on gridworld, window 1, 20000 updates: 3 runs (seeds 1 2 3)"
+// "synpo on gridworld, window 1, 20000 updates, temperature 0.5: 3 runs (seeds 1 2 3)"
 std::string heading(const Group& group);
-std::string heading(const std::string& method, const std::string& world, int64_t window, int64_t least_updates,
-                    int64_t most_updates, const std::vector<uint64_t>& seeds);
 
-// The subsets of pairs that have a name: seen, unseen, all, P, Q, rest.
+// An environment whose hash is not the same in all rows that say it: other ones go by its name. "" where there is none.
+std::string mixed_environment(const Matrix& matrix);
+std::string mixed_environment(const std::vector<const MatrixRow*>& rows);
+
+// The subsets of pairs that have a name: seen, unseen, new, all, P, Q, rest.
+const std::vector<std::string>& subset_names();
 bool is_subset(const std::string& name);
+bool belongs(Standing standing, const std::string& part, const std::string& subset);
 bool belongs(const PairTally& pair, const std::string& subset);
 
 // Something per episode. NaN where the matrix does not say it of all of them: a column missing in one made by hand is 0

@@ -174,8 +174,10 @@ std::vector<char> draw_seen(const SplitPlan& plan, int envs, int tasks, int64_t 
 void check_names(const std::vector<std::string>& names, const char* what) {
   if (names.empty()) fail(Exit::kUsage, "there is no ", what, " to split");
   std::set<std::string> known;
-  for (const std::string& name : names)
+  for (const std::string& name : names) {
+    if (name.empty()) fail(Exit::kUsage, what == std::string("task") ? "a " : "an ", what, " has no name");
     if (!known.insert(name).second) fail(Exit::kUsage, "the ", what, " ", quoted(name), " is named twice");
+  }
 }
 
 }  // namespace

@@ -13,9 +13,9 @@ enum class Axis { kTasks, kEnvs };  // tasks are a matrix's rows, environments i
 
 struct Margin {
   std::string name;
-  int64_t pairs = 0;        // different ones over all runs
-  Tally all, seen, unseen;  // over pairs and runs
-  std::string worst;        // the environment of the task's worst pair, or the other way round
+  int64_t pairs = 0;                   // different ones over all runs
+  Tally all, seen, unseen, new_pairs;  // over pairs and runs
+  std::string worst;                   // the environment of the task's worst pair, or the other way round
   Tally worst_tally;
   double rate() const { return double(all.successes) / double(all.episodes); }
 };
@@ -25,6 +25,7 @@ struct GroupMargins {
   std::vector<Margin> margins;  // lowest success first; then in the order of the matrix
 };
 
+// Throws kData where other environments go by one name.
 std::vector<GroupMargins> margins(const Matrix& matrix, Axis axis);
 
 // The `most` worst of each group.

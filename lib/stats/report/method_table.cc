@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <map>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "format/tsv.h"
 
 namespace synpo {
@@ -13,42 +14,63 @@ namespace {
 // A bootstrap of n values is too narrow by about sqrt((n - 1) / n), and its percentiles by more.
 constexpr int64_t kFewRuns = 10;
 
+// Means of values in rising order, so that the order of the rows does not count.
+MeanSd mean_of(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return mean_sd(values);
+}
+
 TableCell cell_of(const Group& group, const std::string& subset, const MeasureKind& measure,
-                  const BootstrapPlan& plan) {
+                  const std::optional<BootstrapPlan>& bootstrap) {
   TableCell cell;
-  PairValues values;
-  std::unordered_map<std::string, size_t> place;
+  std::map<std::string, std::vector<double>> of_pair;  // a value for each run
   std::vector<double> means, all;
-  int64_t k = 0, episodes_of_first = 0;
-  bool alike = true;  // as many episodes of every pair, so that k in n is the mean
-  for (size_t r = 0; r < group.runs.size(); ++r) {
+  int64_t episodes_of_first = 0;
+  bool level = true;     // as many episodes of every pair
+  double variances = 0;  // of the mean, in units of that of a single episode
+  for (const Run& run : group.runs) {
     std::vector<double> of_run;
-    for (const PairTally& pair : group.runs[r].pairs) {
+    double sum = 0;
+    for (const PairTally& pair : run.pairs) {
       if (!belongs(pair, subset)) continue;
-      const auto [at, fresh] = place.try_emplace(pair.name(), values.size());
-      if (fresh) values.emplace_back();
       of_run.push_back(measure.value(pair.tally));
-      values[at->second].push_back({uint32_t(r), of_run.back()});
+      of_pair[pair.name()].push_back(of_run.back());
       if (cell.episodes == 0) episodes_of_first = pair.tally.episodes;
-      alike &= pair.tally.episodes == episodes_of_first;
+      level &= pair.tally.episodes == episodes_of_first;
       cell.episodes += pair.tally.episodes;
-      if (measure.count) k += measure.count(pair.tally);
+      sum += 1 / double(pair.tally.episodes);
     }
     if (of_run.empty()) continue;
-    means.push_back(mean_sd(of_run).mean);
+    const double pairs = double(of_run.size());
+    variances += sum / pairs / pairs;
     all.insert(all.end(), of_run.begin(), of_run.end());
+    means.push_back(mean_of(std::move(of_run)).mean);
   }
+  const double runs = double(means.size());
   cell.runs = int64_t(means.size());
-  cell.pairs = int64_t(values.size());
-  cell.over_runs = mean_sd(means);
+  cell.pairs = int64_t(of_pair.size());
+  cell.over_runs = mean_of(std::move(means));
   cell.iqm = interquartile_mean(std::move(all));
   cell.interval = {NAN, NAN};
   if (std::isnan(cell.over_runs.mean)) return cell;
-  cell.interval = bootstrap_mean(values, group.runs.size(), plan);
-  if (std::isnan(cell.interval.low) && measure.count && alike) {
-    cell.interval = wilson(k, cell.episodes);
-    cell.wilson = true;
+  if (bootstrap && cell.runs > 1) {
+    std::vector<std::vector<double>> values;
+    for (auto& [name, of_runs] : of_pair) {
+      std::sort(of_runs.begin(), of_runs.end());
+      values.push_back(std::move(of_runs));
+    }
+    cell.interval = stratified_bootstrap(values, *bootstrap);
+  } else {
+    cell.interval = student(cell.over_runs);
   }
+  if (!measure.rate) return cell;
+  const bool unknown = std::isnan(cell.interval.low);
+  if (unknown && !level) return cell;
+  const double mean = std::clamp(cell.over_runs.mean, 0.0, 1.0);
+  const Interval least = wilson_of_rate(mean, runs * runs / variances);
+  cell.wilson = unknown || (least.low <= cell.interval.low && cell.interval.high <= least.high);
+  cell.interval = hull(cell.interval, least);
+  cell.interval = {std::max(0.0, cell.interval.low), std::min(1.0, cell.interval.high)};
   return cell;
 }
 
@@ -62,18 +84,20 @@ std::string label_of(const Group& group, const std::vector<Group>& groups) {
     label += ", " + (group.world.empty() ? "unnamed world" : group.world);
   if (several([&](const Group& other) { return other.window != group.window; }))
     label += concat(", window ", group.window);
+  if (several([&](const Group& other) { return other.temperature != group.temperature; }))
+    label += group.temperature ? ", temperature " + shortest(*group.temperature) : ", temperature not known";
   return label;
 }
 
 }  // namespace
 
 MethodTable tabulate(const Matrix& matrix, const std::vector<std::string>& subsets, const MeasureKind& measure,
-                     const BootstrapPlan& plan) {
-  MethodTable table{&measure, subsets, {}, plan};
+                     const std::optional<BootstrapPlan>& bootstrap) {
+  MethodTable table{&measure, subsets, {}, bootstrap, mixed_environment(matrix)};
   const std::vector<Group> groups = gather(matrix);
   for (const Group& group : groups) {
-    TableLine line{label_of(group, groups), group.world, group.method, group.window, {}};
-    for (const std::string& subset : subsets) line.cells.push_back(cell_of(group, subset, measure, plan));
+    TableLine line{label_of(group, groups), group.world, group.method, group.window, group.temperature, {}};
+    for (const std::string& subset : subsets) line.cells.push_back(cell_of(group, subset, measure, bootstrap));
     table.lines.push_back(std::move(line));
   }
   return table;
@@ -84,23 +108,25 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
   std::vector<std::vector<std::string>> rows = {{"method", "runs"}};
   for (const std::string& subset : table.subsets) {
     rows[0].push_back(subset + (kind.rate ? " %" : ""));
-    if (!brief) rows[0].insert(rows[0].end(), {"IQM", "95 % interval"});
+    if (!brief) rows[0].insert(rows[0].end(), {"95 % interval", "IQM"});
   }
-  bool spread = false, starred = false, resampled = false, few = false;
+  bool spread = false, starred = false, over_runs = false, few = false;
   for (const TableLine& line : table.lines) {
     int64_t runs = 0;
     for (const TableCell& cell : line.cells) runs = std::max(runs, cell.runs);
     std::vector<std::string> row = {line.label, std::to_string(runs)};
     for (const TableCell& cell : line.cells) {
-      row.push_back(spread_text(cell.over_runs, kind));
+      const double mean = cell.over_runs.mean;
+      const int digits = brief ? kind.digits : range_digits(cell.interval, mean, kind);
+      row.push_back(spread_text(cell.over_runs, kind, digits));
       spread |= cell.runs > 1;
       if (brief) continue;
+      row.push_back(range_text(cell.interval, mean, kind) + (cell.wilson ? " w" : ""));
       row.push_back(kind.rate ? percent(cell.iqm, kind.digits) : decimal(cell.iqm, kind.digits));
-      row.push_back(range_text(cell.interval, kind) + (cell.wilson ? " w" : ""));
       starred |= cell.wilson;
-      const bool drawn = !cell.wilson && !std::isnan(cell.interval.low);
-      resampled |= drawn;
-      few |= drawn && cell.runs < kFewRuns;
+      const bool told = !cell.wilson && !std::isnan(cell.interval.low);
+      over_runs |= told;
+      few |= told && cell.runs < kFewRuns;
     }
     rows.push_back(std::move(row));
   }
@@ -108,12 +134,21 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
       concat(kind.name, kind.rate ? " in per cent of the episodes" : " per episode", ", every pair alike.\n");
   if (spread)
     words += "a +- b: mean and standard deviation over runs (divisor: runs - 1); alike: all runs have this value.\n";
+  if (over_runs && table.bootstrap)
+    words += concat("Interval: of the mean, over runs, on these pairs: bootstrap, runs drawn in each pair on its own, ",
+                    table.bootstrap->samples, " samples, seed ", table.bootstrap->seed,
+                    few ? "; of so few runs it is too narrow.\n" : ".\n");
+  else if (over_runs)
+    words += concat("Interval: of the mean, over runs, on these pairs: what other seeds would do; Student's t",
+                    kind.rate ? ", never narrower than w.\n" : ".\n");
+  if (starred)
+    words +=
+        "w: Wilson's interval for k of n, over episodes alone: one run, or runs as alike as these, say nothing of "
+        "others.\n";
+  if (!table.mixed_env.empty())
+    words += concat("The environment ", quoted(table.mixed_env),
+                    " is not the same in all runs (env_hash): other ones go by its name.\n");
   if (!brief) words += "IQM: interquartile mean of the values of all runs and pairs.\n";
-  if (resampled)
-    words += concat("Interval: bootstrap over runs, drawn ",
-                    table.plan.pair_by_pair ? "in each pair on its own" : "whole", ", ", table.plan.samples,
-                    " samples, seed ", table.plan.seed, few ? "; of so few runs it is too narrow.\n" : ".\n");
-  if (starred) words += "w: Wilson's interval for k of n: one run, or runs all alike, tell nothing of other runs.\n";
   if (format == TableFormat::kMarkdown)
     if (const size_t at = words.find("+-"); at != std::string::npos) words.replace(at, 2, "\xc2\xb1");
   if (format != TableFormat::kLatex) return table_text(rows, format) + '\n' + words;
@@ -128,7 +163,7 @@ std::string method_table_text(const MethodTable& table, TableFormat format, bool
 void write_method_table(Output& output, const MethodTable& table) {
   TsvWriter writer(output);
   for (const char* name : {"world", "window", "method", "subset", "measure", "runs", "pairs", "episodes", "mean", "sd",
-                           "iqm", "low", "high", "interval"})
+                           "iqm", "low", "high", "interval", "temperature"})
     writer.text(name);
   writer.end_row();
   for (const TableLine& line : table.lines) {
@@ -142,7 +177,11 @@ void write_method_table(Output& output, const MethodTable& table) {
           .real(cell.over_runs.sd)
           .real(cell.iqm);
       writer.real(cell.interval.low).real(cell.interval.high);
-      writer.text(std::isnan(cell.interval.low) ? "NA" : cell.wilson ? "wilson" : "bootstrap").end_row();
+      writer.text(std::isnan(cell.interval.low) ? "NA"
+                  : cell.wilson                 ? "wilson"
+                  : table.bootstrap             ? "bootstrap"
+                                                : "student");
+      writer.real(line.temperature.value_or(NAN)).end_row();
     }
   }
 }

@@ -1,5 +1,6 @@
 // Methods against subsets of pairs: means and standard deviations over runs, as papers print them.
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,14 @@ struct TableCell {
   MeanSd over_runs;     // of the runs' means over their pairs, every pair alike
   double iqm;           // interquartile mean of all values, one per run and pair
   Interval interval;    // 95 %, for the mean; NaN where there is none
-  bool wilson = false;  // the interval is Wilson's for all successes in all episodes: the runs could tell nothing
+  bool wilson = false;  // the interval is Wilson's, over episodes alone: the runs tell nothing that would widen it
 };
 
 struct TableLine {
-  std::string label;  // the method; with world and window where methods share a name
+  std::string label;  // the method; with world, window and temperature where methods share a name
   std::string world, method;
   int64_t window;
+  std::optional<double> temperature;
   std::vector<TableCell> cells;  // a subset each
 };
 
@@ -31,15 +33,18 @@ struct MethodTable {
   const MeasureKind* measure;
   std::vector<std::string> subsets;
   std::vector<TableLine> lines;
-  BootstrapPlan plan;
+  std::optional<BootstrapPlan> bootstrap;
+  std::string mixed_env;  // an environment that is not the same in all runs; empty where there is none
 };
 
-// The interval is the bootstrap's over runs. With one run, or runs that are all alike, it is Wilson's where the measure
-// is a rate.
+// The interval is Student's over runs: for what other runs would do on these pairs. `bootstrap` asks for the stratified
+// bootstrap's in its place. Where the measure is a rate it also holds Wilson's for the mean: for what these runs would
+// do in other episodes; of one run, or of runs that are all alike, only that one is known. The order of the rows does
+// not count.
 MethodTable tabulate(const Matrix& matrix, const std::vector<std::string>& subsets, const MeasureKind& measure,
-                     const BootstrapPlan& plan);
+                     const std::optional<BootstrapPlan>& bootstrap = {});
 
-// `brief` leaves out interquartile means and intervals. What the numbers are stands below, in LaTeX as a comment.
+// `brief` leaves out intervals and interquartile means. What the numbers are stands below, in LaTeX as a comment.
 std::string method_table_text(const MethodTable& table, TableFormat format, bool brief);
 // A row per method and subset. Rates run from 0 to 1.
 void write_method_table(Output& output, const MethodTable& table);

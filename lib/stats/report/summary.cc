@@ -1,6 +1,7 @@
 #include "stats/report/summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "base/error.h"
@@ -40,7 +41,7 @@ SubsetSummary summarise_subset(const std::string& name, const Group& group) {
   subset.pairs = int64_t(names.size());
   subset.episodes = total.episodes;
   subset.successes = total.successes;
-  subset.interval = wilson(total.successes, total.episodes);
+  subset.interval = total.episodes > 0 ? wilson(total.successes, total.episodes) : Interval{NAN, NAN};
   subset.pair_mean = mean_sd(pair_means).mean;
   subset.success = measure("success");
   subset.reward = measure("reward");
@@ -54,8 +55,8 @@ std::vector<std::string> notes_on(const Group& group) {
   std::vector<std::string> notes;
   std::set<uint64_t> seeds;
   const auto pairs_of = [](const Run& run) {
-    std::set<std::pair<std::string, bool>> pairs;
-    for (const PairTally& pair : run.pairs) pairs.emplace(pair.name(), pair.seen);
+    std::set<std::pair<std::string, Standing>> pairs;
+    for (const PairTally& pair : run.pairs) pairs.emplace(pair.name(), pair.standing);
     return pairs;
   };
   bool repeated = false, different = false;
@@ -74,17 +75,20 @@ std::vector<std::string> notes_on(const Group& group) {
 std::vector<GroupSummary> summarise(const Matrix& matrix) {
   std::vector<GroupSummary> summaries;
   for (const Group& group : gather(matrix)) {
-    GroupSummary summary{group.world,           group.method,          group.window, group.seeds(),
-                         group.runs[0].updates, group.runs[0].updates, {},           notes_on(group)};
-    for (const Run& run : group.runs) {
-      summary.least_updates = std::min(summary.least_updates, run.updates);
-      summary.most_updates = std::max(summary.most_updates, run.updates);
+    const auto [least, most] = group.updates();
+    GroupSummary summary{
+        heading(group), group.world, group.method, group.window,   group.temperature, int64_t(group.runs.size()),
+        least,          most,        {},           notes_on(group)};
+    for (const std::string& name : subset_names()) {
+      SubsetSummary subset = summarise_subset(name, group);
+      const bool part = name == "P" || name == "Q" || name == "rest";
+      if (part ? group.parts : name != "new" || subset.pairs > 0) summary.subsets.push_back(std::move(subset));
     }
-    for (const char* name : {"seen", "unseen", "all"}) summary.subsets.push_back(summarise_subset(name, group));
-    if (group.parts)
-      for (const char* part : {"P", "Q", "rest"}) summary.subsets.push_back(summarise_subset(part, group));
     summaries.push_back(std::move(summary));
   }
+  if (const std::string env = mixed_environment(matrix); !env.empty())
+    summaries.front().notes.push_back(
+        concat("the environment ", quoted(env), " is not the same in all runs (env_hash): other ones go by its name"));
   return summaries;
 }
 

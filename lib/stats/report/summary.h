@@ -1,6 +1,7 @@
 // What a success matrix says over its seen and unseen pairs.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct Measure {
 // NaN stands wherever there is no episode, no second run for an sd, or no number in the matrix (columns missing in one
 // made by hand).
 struct SubsetSummary {
-  std::string name;   // seen, unseen, all; P, Q, rest where the matrix has parts
+  std::string name;   // seen, unseen, all; new where there are such pairs; P, Q, rest where the matrix has parts
   int64_t runs = 0;   // that have such pairs
   int64_t pairs = 0;  // different pairs over all runs
   int64_t episodes = 0, successes = 0;
@@ -28,11 +29,13 @@ struct SubsetSummary {
   Measure success, reward, length, wrong, timeouts;
 };
 
-// The runs of one method in one world with one window.
+// The runs of one method in one world with one window, acting at one temperature.
 struct GroupSummary {
+  std::string heading;
   std::string world, method;
   int64_t window;
-  std::vector<uint64_t> seeds;  // a run each
+  std::optional<double> temperature;
+  int64_t runs;
   int64_t least_updates, most_updates;
   std::vector<SubsetSummary> subsets;
   std::vector<std::string> notes;  // what a reader of the numbers should know

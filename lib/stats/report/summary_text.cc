@@ -21,17 +21,18 @@ std::string cell(const Measure& measure, const char* kind, bool several) {
 std::string summary_text(const std::vector<GroupSummary>& groups) {
   std::string text;
   bool any_several = false;
+  const MeasureKind& success = find_measure("success");
   for (const GroupSummary& group : groups) {
-    const bool several = group.seeds.size() > 1;
+    const bool several = group.runs > 1;
     any_several |= several;
     std::vector<std::vector<std::string>> rows = {{"", "pairs", "k of n", "success %", "95 % interval"}};
     if (several) rows[0].push_back("over runs");
     rows[0].insert(rows[0].end(), {"reward", "length", "wrong %", "timeouts %"});
     for (const SubsetSummary& subset : group.subsets) {
-      const bool none = subset.episodes == 0;
-      std::vector<std::string> row = {subset.name, std::to_string(subset.pairs),
-                                      concat(subset.successes, " of ", subset.episodes), percent(subset.success.pooled),
-                                      none ? "-" : percent_range(subset.interval)};
+      const double rate = subset.success.pooled;
+      std::vector<std::string> row = {
+          subset.name, std::to_string(subset.pairs), concat(subset.successes, " of ", subset.episodes),
+          percent(rate, range_digits(subset.interval, rate, success)), range_text(subset.interval, rate, success)};
       if (several) row.push_back(cell(subset.success, "success", true));
       row.push_back(cell(subset.reward, "reward", several));
       row.push_back(cell(subset.length, "length", several));
@@ -39,11 +40,10 @@ std::string summary_text(const std::vector<GroupSummary>& groups) {
       row.push_back(cell(subset.timeouts, "timeouts", several));
       rows.push_back(std::move(row));
     }
-    text +=
-        heading(group.method, group.world, group.window, group.least_updates, group.most_updates, group.seeds) + '\n';
-    text += table_text(rows) + '\n';
+    text += group.heading + '\n' + table_text(rows) + '\n';
   }
-  text += "k of n: successes of episodes, all pairs and runs together; interval: Wilson's, for k of n.\n";
+  text += "k of n: successes of episodes, all pairs and runs together.\n";
+  text += "Interval: Wilson's, for k of n, over episodes: what these runs would do again on these pairs.\n";
   text += "reward and length: per episode; wrong and timeouts: share of the episodes.\n";
   if (any_several)
     text +=
@@ -59,20 +59,19 @@ void write_summary(Output& output, const std::vector<GroupSummary>& groups) {
     writer.text(name);
   for (const char* name : {"success", "reward", "length", "wrong", "timeouts"})
     writer.text(name).text(concat(name, "_run_mean")).text(concat(name, "_run_sd"));
-  writer.end_row();
+  writer.text("temperature").end_row();
   for (const GroupSummary& group : groups) {
     for (const SubsetSummary& subset : group.subsets) {
-      const bool none = subset.episodes == 0;
       writer.text(group.world)
           .whole(group.window)
           .text(group.method)
           .whole(group.least_updates)
           .whole(group.most_updates);
       writer.text(subset.name).whole(subset.runs).whole(subset.pairs).whole(subset.episodes).whole(subset.successes);
-      writer.real(none ? NAN : subset.interval.low).real(none ? NAN : subset.interval.high).real(subset.pair_mean);
+      writer.real(subset.interval.low).real(subset.interval.high).real(subset.pair_mean);
       for (const Measure* measure : {&subset.success, &subset.reward, &subset.length, &subset.wrong, &subset.timeouts})
         writer.real(measure->pooled).real(measure->over_runs.mean).real(measure->over_runs.sd);
-      writer.end_row();
+      writer.real(group.temperature.value_or(NAN)).end_row();
     }
   }
 }

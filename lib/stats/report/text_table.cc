@@ -10,9 +10,6 @@
 namespace synpo {
 namespace {
 
-// Values of runs that differ by less than rounding are alike.
-bool alike(const MeanSd& values) { return values.sd <= 1e-12 * (1 + std::abs(values.mean)); }
-
 std::string escaped(const std::string& cell, TableFormat format) {
   std::string out;
   for (size_t i = 0; i < cell.size(); ++i) {
@@ -34,6 +31,17 @@ std::string escaped(const std::string& cell, TableFormat format) {
     }
   }
   return out;
+}
+
+constexpr int kMoreDigits = 6;  // behind the point, at most, where a measure's own say too little
+
+// An end of an interval. That of a rate is 100 or 0 only where all or none succeeded, which the mean tells.
+std::string end_text(double end, double mean, const MeasureKind& kind, int digits) {
+  if (!kind.rate) return decimal(end, digits);
+  const double step = std::pow(10, -digits) / 100;
+  if (mean > 0 && end < step) return percent(step, digits);
+  if (mean < 1 && end > 1 - step) return percent(1 - step, digits);
+  return percent(end, digits);
 }
 
 std::string latex(const std::vector<std::vector<std::string>>& rows, size_t left) {
@@ -67,21 +75,29 @@ std::string percent(double rate, int digits) {
   return decimal(rate * 100, digits);
 }
 
-std::string percent_range(const Interval& interval) { return range_text(interval, find_measure("success")); }
-
-std::string range_text(const Interval& interval, const MeasureKind& kind) {
-  if (std::isnan(interval.low)) return "-";
-  return decimal(interval.low * kind.scale(), kind.digits) + " to " +
-         decimal(interval.high * kind.scale(), kind.digits);
+int range_digits(const Interval& interval, double mean, const MeasureKind& kind) {
+  if (std::isnan(interval.low) || interval.low == interval.high) return kind.digits;
+  int digits = kind.digits;
+  while (digits < kind.digits + kMoreDigits &&
+         end_text(interval.low, mean, kind, digits) == end_text(interval.high, mean, kind, digits))
+    ++digits;
+  return digits;
 }
 
-std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind) {
+std::string range_text(const Interval& interval, double mean, const MeasureKind& kind) {
+  if (std::isnan(interval.low)) return "-";
+  const int digits = range_digits(interval, mean, kind);
+  return end_text(interval.low, mean, kind, digits) + " to " + end_text(interval.high, mean, kind, digits);
+}
+
+std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind, int digits) {
+  digits = std::max(digits, kind.digits);
   const double mean = over_runs.mean * kind.scale(), sd = over_runs.sd * kind.scale();
-  if (std::isnan(sd)) return kind.rate ? percent(over_runs.mean, kind.digits) : decimal(mean, kind.digits);
-  if (alike(over_runs)) return concat(decimal(mean, kind.digits), " (", over_runs.count, " alike)");
-  int digits = kind.digits;
+  const std::string one = kind.rate ? percent(over_runs.mean, digits) : decimal(mean, digits);
+  if (std::isnan(sd)) return one;
+  if (alike(over_runs)) return concat(one, " (", over_runs.count, " alike)");
   std::string shown_mean, shown_sd;
-  for (; digits <= kind.digits + 6; ++digits) {
+  for (const int most = digits + kMoreDigits; digits <= most; ++digits) {
     shown_mean = decimal(mean, digits);
     shown_sd = decimal(sd, digits);
     const double value = std::atof(shown_mean.c_str());

@@ -144,7 +144,7 @@ TEST(Panels, TooManyNamesAreRefused) {
   EXPECT_NO_THROW(arranged(table(pairs), HeatOrder::kCluster, HeatOrder::kMean));
 }
 
-TEST(Margins, PoolTheLineAndEachOfItsKinds) {
+TEST(Margins, MeansOfTheLineAndOfEachOfItsKinds) {
   const HeatTable one =
       arranged(table({{"a", "x", 80, true}, {"b", "x", 20, false}, {"a", "y", 40, true}}), HeatOrder::kPaper)
           .panels[0]
@@ -152,15 +152,33 @@ TEST(Margins, PoolTheLineAndEachOfItsKinds) {
   const std::vector<HeatMargin> margins = margins_of(one);
   ASSERT_EQ(margins.size(), 3u);
   EXPECT_EQ(margins[0].name, "mean");
-  EXPECT_DOUBLE_EQ(margins[0].tasks[0].rate(), 0.5);
-  EXPECT_DOUBLE_EQ(margins[0].envs[0].rate(), 0.6);
+  EXPECT_DOUBLE_EQ(margins[0].tasks[0].mean(), 0.5);
+  EXPECT_DOUBLE_EQ(margins[0].envs[0].mean(), 0.6);
   EXPECT_EQ(margins[1].name, "mean seen");
-  EXPECT_DOUBLE_EQ(margins[1].tasks[0].rate(), 0.8);
+  EXPECT_DOUBLE_EQ(margins[1].tasks[0].mean(), 0.8);
   EXPECT_EQ(margins[2].name, "mean unseen");
-  EXPECT_DOUBLE_EQ(margins[2].envs[1].rate(), 0.2);
+  EXPECT_DOUBLE_EQ(margins[2].envs[1].mean(), 0.2);
   EXPECT_FALSE(margins[2].tasks[1].evaluated());
   // One kind has no mean apart from that of all.
   EXPECT_EQ(margins_of(table({{"a", "x", 80}})).size(), 1u);
+}
+
+TEST(Margins, EveryPairCountsAlikeWhateverItsEpisodes) {
+  Matrix matrix;
+  for (const int64_t episodes : {10, 90}) {
+    MatrixRow row;
+    row.env = "e" + std::to_string(episodes);
+    row.task = "t";
+    row.seen = true;
+    row.episodes = episodes;
+    row.successes = episodes == 10 ? 10 : 45;
+    matrix.rows.push_back(row);
+  }
+  const HeatTable one = pool_matrix(matrix);
+  EXPECT_DOUBLE_EQ(margins_of(one)[0].tasks[0].mean(), 0.75);
+  EXPECT_DOUBLE_EQ(one.groups[0].mean(), 0.75);
+  EXPECT_DOUBLE_EQ(one.groups[0].rate(), 0.55);
+  EXPECT_EQ(rate_text(margins_of(one)[0].envs[0].mean()), "1.00");
 }
 
 TEST(Panels, NothingIsClippedAndNothingMeets) {

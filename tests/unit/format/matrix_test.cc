@@ -1,5 +1,7 @@
 #include "format/matrix.h"
 
+#include <cmath>
+
 #include "helpers/table_helpers.h"
 
 namespace synpo {
@@ -90,6 +92,63 @@ TEST(Matrix, RefusesHostileRows) {
             "65 IN: line 2, column 11 ('seed'): found '-1', expected a whole number, at least 0");
   EXPECT_EQ(row_refused("\tb\t10\t5\t1\t0\t0\t0\t1\tP\t1"),
             "65 IN: line 2, column 1 ('env'): found '', expected the name of an environment");
+}
+
+TEST(Matrix, TemperatureNewAndHashAreOptional) {
+  const std::string text =
+      "run\tworld\twindow\tmethod\tseed\tupdates\teval_seed\tfirst_episode\tenv\ttask\tseen\tepisodes\tsuccesses\t"
+      "wrong\ttimeouts\treward\tlength\ttemperature\tnew\tenv_hash\n"
+      "a\tgridworld\t1\tsynpo\t1\t2\t3\t0\tmap1\tR-B\t0\t5\t5\t0\t0\t1.5\t9\t0.25\t1\tc41dc56a8cd40d27\n"
+      "a\tgridworld\t1\tsynpo\t1\t2\t3\t0\tmap1\tB-G\t1\t5\t5\t0\t0\t\t9\t\t0\t\n";
+  const Matrix matrix = matrix_of(text);
+  EXPECT_EQ(matrix.rows[0].temperature, 0.25);
+  EXPECT_EQ(matrix.rows[0].standing(), Standing::kNew);
+  EXPECT_EQ(matrix.rows[0].env_hash, "c41dc56a8cd40d27");
+  EXPECT_FALSE(matrix.rows[1].temperature);
+  EXPECT_EQ(matrix.rows[1].standing(), Standing::kSeen);
+  EXPECT_TRUE(std::isnan(matrix.rows[1].reward)) << "an empty field: not counted";
+  EXPECT_TRUE(matrix.extra_columns.empty());
+  EXPECT_EQ(written([&](Output& output) { write_matrix(output, matrix); }), text);
+
+  const Matrix bare = matrix_of("env\ttask\tepisodes\tsuccesses\ne\tt\t4\t3\n");
+  EXPECT_TRUE(std::isnan(bare.rows[0].reward));
+  EXPECT_EQ(bare.rows[0].standing(), Standing::kUnseen);
+  const std::string again = written([&](Output& output) { write_matrix(output, bare); });
+  EXPECT_TRUE(
+      again.starts_with("run\tworld\twindow\tmethod\tseed\tupdates\teval_seed\tfirst_episode\tenv\ttask\tseen\t"
+                        "episodes\tsuccesses\twrong\ttimeouts\tlength\n"))
+      << again;
+}
+
+TEST(Matrix, RefusesWhatNewColumnsCannotHold) {
+  const auto with = [](const std::string& fields) {
+    return refused("env\ttask\tepisodes\tsuccesses\tseen\tnew\ttemperature\n" + fields + "\n");
+  };
+  EXPECT_EQ(with("a\tb\t9\t1\t0\t1\t0"), "nothing thrown");
+  EXPECT_EQ(with("a\tb\t9\t1\t1\t1\t0"),
+            "65 IN: line 2, column 6 ('new'): found '1', expected 0 of a pair that is seen");
+  EXPECT_EQ(with("a\tb\t9\t1\t0\t2\t0"),
+            "65 IN: line 2, column 6 ('new'): found '2', expected a whole number from 0 to 1");
+  EXPECT_EQ(with("a\tb\t9\t1\t0\t0\t-1"),
+            "65 IN: line 2, column 7 ('temperature'): found '-1', expected a number, at least 0");
+  EXPECT_EQ(with("a\tb\t9\t1\t0\t0\thot"),
+            "65 IN: line 2, column 7 ('temperature'): found 'hot', expected a finite number");
+  EXPECT_EQ(with("a\tb\t9\t1\t0\t0\t0\na\tb\t9\t1\t0\t0\t0.5"), "nothing thrown") << "two runs";
+}
+
+TEST(Matrix, WriterRefusesWhatReadersWould) {
+  Matrix matrix;
+  matrix.rows.resize(1);
+  matrix.rows[0].env = matrix.rows[0].task = "x";
+  matrix.extra_columns.resize(1000, "c");
+  matrix.rows[0].extra.resize(1000);
+  EXPECT_TRUE(thrown([&] {
+                written([&](Output& output) { write_matrix(output, matrix); });
+              }).starts_with("65 a matrix with 1000 columns that are none of this format's"));
+  matrix.extra_columns.clear();
+  matrix.rows.resize(kMatrixRows + 1);
+  EXPECT_EQ(thrown([&] { written([&](Output& output) { write_matrix(output, matrix); }); }),
+            "65 a matrix of 1000001 rows, at most 1000000 can be read");
 }
 
 TEST(Matrix, RefusesMissingColumnsRepeatedRowsAndNoRows) {

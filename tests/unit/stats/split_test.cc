@@ -216,6 +216,11 @@ TEST(Split, RefusesPlansThatCannotBeMet) {
   p = plan(2, 2, 2);
   p.envs = {"e1", "e1"};
   EXPECT_EQ(refused(p), "64 the environment 'e1' is named twice");
+  p.envs = {"e1", ""};
+  EXPECT_EQ(refused(p), "64 an environment has no name");
+  p = plan(2, 2, 2);
+  p.tasks = {"", "t1"};
+  EXPECT_EQ(refused(p), "64 a task has no name");
 }
 
 TEST(Split, ChoosesNames) {

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "helpers/table_helpers.h"
 #include "stats/bootstrap.h"
+#include "stats/chance.h"
 #include "stats/matrix/filter.h"
 #include "stats/report/compare.h"
 #include "stats/report/margins.h"
@@ -79,68 +82,81 @@ TEST(Quantile, TypeSeven) {
   EXPECT_DOUBLE_EQ(quantile({1, 2}, 1), 2);
 }
 
-PairValues one_pair(const std::vector<double>& values) {
-  PairValues pairs(1);
-  for (size_t r = 0; r < values.size(); ++r) pairs[0].push_back({uint32_t(r), values[r]});
-  return pairs;
-}
-
 // All samples of few runs can be counted out.
 TEST(Bootstrap, FewRunsCountedOut) {
-  const Interval two = bootstrap_mean(one_pair({0, 1}), 2, {});  // 0 and 1 in 1 of 4 samples each
+  const Interval two = stratified_bootstrap({{0, 1}}, {});  // 0 and 1 in 1 of 4 samples each
   EXPECT_EQ(two.low, 0);
   EXPECT_EQ(two.high, 1);
   // The mean is the number of fours: binomial (4, 1/4), P(4) = 0.4 %, P(3 or 4) = 5.1 %.
-  const Interval four = bootstrap_mean(one_pair({0, 4, 0, 0}), 4, {10000, 1, false});
+  const Interval four = stratified_bootstrap({{0, 4, 0, 0}}, {10000, 1});
   EXPECT_EQ(four.low, 0);
   EXPECT_EQ(four.high, 3);
-  EXPECT_TRUE(std::isnan(bootstrap_mean(one_pair({0.3}), 1, {}).low)) << "one run says nothing of others";
-  EXPECT_TRUE(std::isnan(bootstrap_mean(one_pair({1, 1, 1}), 3, {}).low)) << "nor do runs that are all alike";
+  EXPECT_TRUE(std::isnan(stratified_bootstrap({{0.3}}, {}).low)) << "one run says nothing of others";
+  EXPECT_TRUE(std::isnan(stratified_bootstrap({{1, 1, 1}}, {}).low)) << "nor do runs that are all alike";
 }
 
 // Efron 1979: the bootstrap's standard error of a mean of n is sqrt((n - 1) / n) sd / sqrt(n).
 TEST(Bootstrap, ManyRunsAsTheFormulaHasIt) {
   std::vector<double> values;
   for (int i = 0; i < 100; ++i) values.push_back(i % 10);
-  const Interval interval = bootstrap_mean(one_pair(values), 100, {20000, 3, false});
+  const Interval interval = stratified_bootstrap({values}, {20000, 3});
   const double half = 1.96 * std::sqrt(8.25) / 10;  // the variance of 0 to 9 with divisor n
   EXPECT_NEAR(interval.low, 4.5 - half, 0.03);
   EXPECT_NEAR(interval.high, 4.5 + half, 0.03);
 }
 
-// One run fails at everything and one at nothing: drawn whole, the mean of two is 0 in a quarter of the samples; drawn
-// in each of 100 pairs on its own it has the variance 1/4 / 2 / 100.
-TEST(Bootstrap, WholeRunsAndPairByPair) {
-  const PairValues pairs(100, {{0, 0.0}, {1, 1.0}});
-  const Interval whole = bootstrap_mean(pairs, 2, {4000, 1, false}), apart = bootstrap_mean(pairs, 2, {4000, 1, true});
-  EXPECT_EQ(whole.low, 0);
-  EXPECT_EQ(whole.high, 1);
+// One run fails at everything and one at nothing: drawn in each of 100 pairs on its own, the mean of two has the
+// variance 1/4 / 2 / 100.
+TEST(Bootstrap, PairByPair) {
+  const Interval apart = stratified_bootstrap(std::vector<std::vector<double>>(100, {0, 1}), {4000, 1});
   EXPECT_NEAR(apart.low, 0.5 - 1.96 * std::sqrt(1.0 / 800), 0.006);
   EXPECT_NEAR(apart.high, 0.5 + 1.96 * std::sqrt(1.0 / 800), 0.006);
-}
-
-TEST(Bootstrap, DifferencesOverPairs) {
-  PairValues a(400, {{0, 0.0}}), b = a;
-  for (size_t p = 0; p < 400; p += 2) b[p][0].value = 1;
-  const Interval interval = bootstrap_difference(a, 1, b, 1, false, {4000, 1, false});
-  EXPECT_NEAR(interval.low, 0.5 - 1.96 * 0.5 / 20, 0.005);
-  EXPECT_NEAR(interval.high, 0.5 + 1.96 * 0.5 / 20, 0.005);
-}
-
-TEST(Bootstrap, MatchedRunsAreDrawnTogether) {
-  const PairValues a = one_pair({0.2, 0.8}), b = one_pair({0.3, 0.9});
-  EXPECT_TRUE(std::isnan(bootstrap_difference(a, 2, b, 2, true, {}).low)) << "0.1 in every sample";
-  const Interval apart = bootstrap_difference(a, 2, b, 2, false, {});  // the ends in 1 of 16 samples each
-  EXPECT_NEAR(apart.low, -0.5, 1e-12);
-  EXPECT_NEAR(apart.high, 0.7, 1e-12);
 }
 
 TEST(Bootstrap, TheSeedDecides) {
   std::vector<double> values;
   for (int i = 0; i < 20; ++i) values.push_back(std::sqrt(i));
-  const auto interval = [&](uint64_t seed) { return bootstrap_mean(one_pair(values), 20, {500, seed, false}); };
+  const auto interval = [&](uint64_t seed) { return stratified_bootstrap({values}, {500, seed}); };
   EXPECT_EQ(interval(1).low, interval(1).low);
   EXPECT_NE(interval(1).low, interval(2).low);
+}
+
+// 1, 2, 3, 4, 9 and 30 degrees of freedom as tables have them; 1.5 and 501 by a program of its own.
+TEST(Student, Published) {
+  const std::pair<double, double> cases[] = {{1, 12.7062047}, {2, 4.30265273},   {3, 3.18244631},
+                                             {4, 2.77644511}, {9, 2.26215716},   {30, 2.04227246},
+                                             {1.5, 6.016663}, {501, 1.96471030}, {1e9, 1.95996398}};
+  for (const auto& [df, t] : cases) EXPECT_NEAR(student95(df), t, 5e-7 * t) << df;
+  const Interval interval = student(mean_sd({2, 4, 9}));  // mean 5, sd sqrt(13)
+  EXPECT_NEAR(interval.low, 5 - 4.30265273 * std::sqrt(13.0 / 3), 1e-7);
+  EXPECT_NEAR(interval.high, 5 + 4.30265273 * std::sqrt(13.0 / 3), 1e-7);
+  EXPECT_TRUE(std::isnan(student(mean_sd({2})).low)) << "one run says nothing of others";
+  EXPECT_TRUE(std::isnan(student(mean_sd({2, 2})).low)) << "nor do runs that are all alike";
+}
+
+// Enumerated by a program of its own, over all pairs of counts.
+TEST(Newcombe, HowOftenItLeavesOutZeroByChance) {
+  const struct {
+    double rate;
+    int64_t n1, n2;
+    double often;
+  } cases[] = {{0.9, 10, 10, 0.0090402222},
+               {0.95, 20, 20, 0.0020950655},
+               {0.98, 100, 100, 0.0157867752},
+               {0.5, 4, 4, 0.0703125},
+               {0.95, 3, 200, 0.1019794283},
+               {0.9, 100, 50, 0.0415556634},
+               {0.995, 1000, 1000, 0.039406195},
+               {0.5, 4, 40000, 0.1249965892},
+               {0.5, 10000, 10000, 0.0501468836},
+               {1, 5, 5, 0},
+               {0, 5, 5, 0}};
+  for (const auto& c : cases) {
+    EXPECT_NEAR(newcombe_false_alarms(c.rate, c.n1, c.n2), c.often, 1e-8) << c.rate << ' ' << c.n1;
+    EXPECT_NEAR(newcombe_false_alarms(1 - c.rate, c.n2, c.n1), c.often, 1e-8) << c.rate << ' ' << c.n1;
+  }
+  EXPECT_NEAR(newcombe_false_alarms(0.5, 50000, 50000), 0.05, 0.001);
+  EXPECT_NEAR(newcombe_false_alarms(0.5, 4, 4000000000000), 0.125, 0.001) << "of 16 outcomes the two ends";
 }
 
 TEST(Text, RatesAreNeverRoundedToCertainty) {
@@ -157,8 +173,27 @@ TEST(Text, RatesAreNeverRoundedToCertainty) {
   EXPECT_EQ(spread_text(mean_sd({0.8, 0.8002}), success()), "80.01 +- 0.01") << "and not 0.0";
   EXPECT_EQ(spread_text({1, 0.8, NAN}, success()), "80.0");
   EXPECT_EQ(spread_text({0, NAN, NAN}, success()), "-");
+  EXPECT_EQ(spread_text({3, 0.99996, 0}, success()), "99.9 (3 alike)");
   EXPECT_EQ(spread_text({2, 7.125, 0.5}, find_measure("reward")), "7.12 +- 0.50");
   EXPECT_EQ(decimal(-0.001, 2), "0.00");
+}
+
+TEST(Text, EndsAreNeverRoundedToCertaintyNorToOneNumber) {
+  const auto range = [](Interval interval, double mean) { return range_text(interval, mean, success()); };
+  EXPECT_EQ(range({0.812, 0.86}, 0.84), "81.2 to 86.0");
+  EXPECT_EQ(range({0.9, 0.99991}, 0.95), "90.0 to 99.9");
+  EXPECT_EQ(range({0.00009, 0.1}, 0.05), "0.1 to 10.0");
+  EXPECT_EQ(range({0, 1}, 0.5), "0.1 to 99.9")
+      << "where some succeed and some fail no rate of other episodes is 0 or 1";
+  EXPECT_EQ(range({0.8864, 1}, 1), "88.6 to 100.0");
+  EXPECT_EQ(range({0, 0.1136}, 0), "0.0 to 11.4");
+  // Wilson's of 39,990 in 40,000, worked out apart: 0.999540 to 0.999864, and the rate is 0.99975.
+  const Interval near_all = wilson(39990, 40000);
+  EXPECT_EQ(range(near_all, 0.99975), "99.95 to 99.99");
+  EXPECT_EQ(range_digits(near_all, 0.99975, success()), 2);
+  EXPECT_EQ(percent(0.99975, 2), "99.98");
+  EXPECT_EQ(range_text({NAN, NAN}, 0.5, success()), "-");
+  EXPECT_EQ(range_text({-0.004, 0.002}, 0, find_measure("reward")), "-0.004 to 0.002");
 }
 
 TEST(Text, TablesInEveryFormat) {
@@ -188,9 +223,9 @@ TEST(MethodTable, HandComputed) {
   EXPECT_EQ(cell.episodes, 40);
   EXPECT_DOUBLE_EQ(cell.over_runs.mean, 0.725);  // of 0.75 and 0.7
   EXPECT_NEAR(cell.over_runs.sd, 0.05 / std::sqrt(2.0), 1e-15);
-  EXPECT_DOUBLE_EQ(cell.iqm, 0.7);  // of 0.6 and 0.8
-  EXPECT_DOUBLE_EQ(cell.interval.low, 0.7);
-  EXPECT_DOUBLE_EQ(cell.interval.high, 0.75);
+  EXPECT_DOUBLE_EQ(cell.iqm, 0.7);                                   // of 0.6 and 0.8
+  EXPECT_NEAR(cell.interval.low, 0.725 - 12.7062047 * 0.025, 1e-8);  // Student's, one degree of freedom
+  EXPECT_EQ(cell.interval.high, 1) << "no rate is above";
   EXPECT_FALSE(cell.wilson);
   EXPECT_TRUE(std::isnan(table.lines[0].cells[1].over_runs.mean));
   EXPECT_TRUE(std::isnan(table.lines[0].cells[1].interval.low));
@@ -199,15 +234,15 @@ TEST(MethodTable, HandComputed) {
   EXPECT_DOUBLE_EQ(table.lines[1].cells[0].interval.low, wilson(3, 10).low);
   const std::string text = method_table_text(table, TableFormat::kText, false);
   EXPECT_TRUE(
-      text.starts_with("method  runs       seen %   IQM   95 % interval  unseen %  IQM  95 % interval\n"
-                       "synpo      2  72.5 +- 3.5  70.0    70.0 to 75.0         -    -              -\n"
-                       "mlp        1         30.0  30.0  10.8 to 60.3 w         -    -              -\n"))
+      text.starts_with("method  runs       seen %   95 % interval   IQM  unseen %  95 % interval  IQM\n"
+                       "synpo      2  72.5 +- 3.5    40.7 to 99.9  70.0         -              -    -\n"
+                       "mlp        1         30.0  10.8 to 60.3 w  30.0         -              -    -\n"))
       << text;
   EXPECT_EQ(method_table_text(table, TableFormat::kText, true).find("IQM"), std::string::npos);
   EXPECT_EQ(method_table_text(table, TableFormat::kLatex, true).substr(0, 2), "% ");
   const std::string tsv = written([&](Output& output) { write_method_table(output, table); });
   EXPECT_NE(tsv.find("gridworld\t1\tmlp\tseen\tsuccess\t1\t1\t10\t0.3\tNA\t0.3\t0.107"), std::string::npos) << tsv;
-  EXPECT_NE(tsv.find("gridworld\t1\tmlp\tunseen\tsuccess\t0\t0\t0\tNA\tNA\tNA\tNA\tNA\tNA\n"), std::string::npos)
+  EXPECT_NE(tsv.find("gridworld\t1\tmlp\tunseen\tsuccess\t0\t0\t0\tNA\tNA\tNA\tNA\tNA\tNA\tNA\n"), std::string::npos)
       << tsv;
 }
 
@@ -220,12 +255,41 @@ TEST(MethodTable, PairsCountAlike) {
   EXPECT_FALSE(cell.wilson);
 }
 
+// Two runs of 360 and 361 in 400: Student's is 0.9 +- 12.7 * 0.00125, within Wilson's of 721 in 800, which is worked
+// out apart: 0.878620 to 0.920045.
+TEST(MethodTable, NeverNarrowerThanTheEpisodesAllow) {
+  const TableCell cell =
+      tabulate(matrix({row("r1", 1, "e", "t", true, 360, 400), row("r2", 2, "e", "t", true, 361, 400)}), {"seen"},
+               success())
+          .lines[0]
+          .cells[0];
+  EXPECT_TRUE(cell.wilson);
+  EXPECT_NEAR(cell.interval.low, 0.878620, 1e-6);
+  EXPECT_NEAR(cell.interval.high, 0.920045, 1e-6);
+}
+
+TEST(MethodTable, TheOrderOfTheRowsDoesNotCount) {
+  std::vector<MatrixRow> rows;
+  for (uint64_t seed = 1; seed <= 3; ++seed)
+    for (int e = 0; e < 7; ++e)
+      rows.push_back(
+          row("r" + std::to_string(seed), seed, "e" + std::to_string(e), "t", true, (seed * 5 + e * 3) % 11, 13));
+  const auto ends = [&](const std::optional<BootstrapPlan>& bootstrap) {
+    const TableCell cell = tabulate(matrix(rows), {"seen"}, success(), bootstrap).lines[0].cells[0];
+    return std::tuple(cell.over_runs.mean, cell.over_runs.sd, cell.interval.low, cell.interval.high, cell.iqm);
+  };
+  const auto given = ends({}), drawn = ends(BootstrapPlan{});
+  std::reverse(rows.begin(), rows.end());
+  EXPECT_EQ(ends({}), given);
+  EXPECT_EQ(ends(BootstrapPlan{}), drawn);
+}
+
 TEST(MethodTable, OnlyABootstrapOfFewRunsIsTooNarrow) {
   std::vector<MatrixRow> rows = {row("m", 1, "e", "t", true, 5, 10, "mlp")};
   for (uint64_t seed = 1; seed <= 12; ++seed)
-    rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 3 + seed % 4));
+    rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 300 + 100 * (seed % 4), 1000));
   const auto warns = [&] {
-    return method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false)
+    return method_table_text(tabulate(matrix(rows), {"seen"}, success(), BootstrapPlan{}), TableFormat::kText, false)
                .find("too narrow") != std::string::npos;
   };
   EXPECT_FALSE(warns()) << "twelve runs, and one with Wilson's";
@@ -240,7 +304,7 @@ TEST(MethodTable, RunsWithoutAFailure) {
   for (uint64_t seed : {1, 2, 3}) rows.push_back(row("r" + std::to_string(seed), seed, "e", "t", true, 10));
   const std::string text =
       method_table_text(tabulate(matrix(rows), {"seen"}, success(), {}), TableFormat::kText, false);
-  EXPECT_NE(text.find("100.0 (3 alike)  100.0  88.6 to 100.0 w"), std::string::npos) << text;
+  EXPECT_NE(text.find("100.0 (3 alike)  88.6 to 100.0 w  100.0"), std::string::npos) << text;
 }
 
 TEST(MethodTable, LabelsTellWorldsAndWindowsApart) {
@@ -253,6 +317,19 @@ TEST(MethodTable, LabelsTellWorldsAndWindowsApart) {
   EXPECT_EQ(table.lines[2].label, "mlp");
 }
 
+TEST(MethodTable, TemperaturesAreLinesOfTheirOwn) {
+  Matrix m =
+      matrix({row("r1", 1, "e", "t", true, 5), row("r1", 1, "e", "t", true, 7), row("r2", 2, "e", "t", true, 9)});
+  m.rows[0].temperature = 0;
+  m.rows[1].temperature = m.rows[2].temperature = 0.5;
+  const MethodTable table = tabulate(m, {"seen"}, success());
+  ASSERT_EQ(table.lines.size(), 2u);
+  EXPECT_EQ(table.lines[0].label, "synpo, temperature 0");
+  EXPECT_EQ(table.lines[0].cells[0].runs, 1);
+  EXPECT_EQ(table.lines[1].label, "synpo, temperature 0.5");
+  EXPECT_DOUBLE_EQ(table.lines[1].cells[0].over_runs.mean, 0.8);
+}
+
 TEST(Compare, HandComputed) {
   const MatrixSource a{"a", matrix({row("a", 1, "e", "t", true, 50, 100), row("a", 1, "f", "t", false, 20, 100),
                                     row("a", 1, "g", "t", true, 10, 100), row("a", 1, "h", "t", true, 1, 100),
@@ -260,11 +337,11 @@ TEST(Compare, HandComputed) {
   const MatrixSource b{
       "b", matrix({row("b", 1, "e", "t", true, 60, 100, "mlp"), row("b", 1, "f", "t", false, 70, 100, "mlp"),
                    row("b", 1, "g", "t", true, 10, 50, "mlp"), row("b", 1, "h", "t", false, 9, 100, "mlp")})};
-  const Comparison c = compare(a, b, false, {});
+  const Comparison c = compare(a, b, false);
   EXPECT_TRUE(c.matched);
-  EXPECT_EQ(c.other_starts, 1) << "g: 100 episodes and 50";
-  EXPECT_EQ(c.other_seen, 1) << "h";
-  EXPECT_EQ(c.only_one, 1) << "i";
+  EXPECT_EQ(c.other_starts.pairs, 1) << "g: 100 episodes and 50";
+  EXPECT_EQ(c.other_seen.pairs, 1) << "h";
+  EXPECT_EQ(c.only_one.pairs, 1) << "i";
   ASSERT_EQ(c.subsets.size(), 3u);
   EXPECT_EQ(c.subsets[2].name, "all");
   EXPECT_EQ(c.subsets[2].pairs, 2);
@@ -272,9 +349,10 @@ TEST(Compare, HandComputed) {
   EXPECT_DOUBLE_EQ(c.subsets[2].mean_a, 0.35);
   EXPECT_DOUBLE_EQ(c.subsets[2].mean_b, 0.65);
   EXPECT_NEAR(c.subsets[2].change, 0.3, 1e-12);
-  EXPECT_NEAR(c.subsets[2].interval.low, 0.1, 1e-12);   // e drawn twice
-  EXPECT_NEAR(c.subsets[2].interval.high, 0.5, 1e-12);  // f drawn twice
-  EXPECT_TRUE(std::isnan(c.subsets[0].interval.low)) << "one pair and one run each";
+  // Changes of 0.1 and 0.5 in two environments: 0.3 +- 12.7 * 0.2.
+  EXPECT_EQ(c.subsets[2].interval.low, -1);
+  EXPECT_EQ(c.subsets[2].interval.high, 1);
+  EXPECT_DOUBLE_EQ(c.subsets[0].interval.low, newcombe(60, 100, 50, 100).low) << "one pair and one run each";
   EXPECT_EQ(c.pairs.at(0).env, "f");
   EXPECT_DOUBLE_EQ(c.pairs[0].change(), 0.5);
   EXPECT_DOUBLE_EQ(c.pairs[0].interval.low, newcombe(70, 100, 20, 100).low);
@@ -284,20 +362,146 @@ TEST(Compare, HandComputed) {
                       "pair without common"),
             std::string::npos)
       << text;
-  EXPECT_EQ(compare(a, b, true, {}).subsets.back().pairs, 3);
+  EXPECT_EQ(compare(a, b, true).subsets.back().pairs, 3);
 }
 
 TEST(Compare, RunsOfOneSeedBelongTogetherInAnyOrder) {
   // Seed by seed B is better by 0.1, and the seeds differ by 0.5.
   const MatrixSource a{"a", matrix({row("a1", 1, "e", "t", true, 2), row("a2", 2, "e", "t", true, 7)})};
   const MatrixSource b{"b", matrix({row("b2", 2, "e", "t", true, 8), row("b1", 1, "e", "t", true, 3)})};
-  EXPECT_TRUE(std::isnan(compare(a, b, false, {}).subsets[0].interval.low));
+  EXPECT_NEAR(compare(a, b, false).subsets[0].interval.low, newcombe(11, 20, 9, 20).low, 1e-12);
   MatrixSource other = b;
   other.matrix.rows[0].seed = 3;
-  const Comparison apart = compare(a, other, false, {});
+  const Comparison apart = compare(a, other, false);
   EXPECT_FALSE(apart.matched);
-  EXPECT_NEAR(apart.subsets[0].interval.low, -0.4, 1e-12);
-  EXPECT_NEAR(apart.subsets[0].interval.high, 0.6, 1e-12);
+  EXPECT_EQ(apart.subsets[0].interval.low, -1) << "two degrees of freedom: 0.1 +- 4.3 * sqrt(0.125)";
+  EXPECT_EQ(apart.subsets[0].interval.high, 1);
+}
+
+// Four environments, three tasks, 1,000 episodes a pair; side 0 or 1, and a run's number, which is its seed.
+std::vector<MatrixRow> made_up(int side, const std::vector<int>& runs) {
+  std::vector<MatrixRow> rows;
+  for (const int r : runs)
+    for (int e = 0; e < 4; ++e)
+      for (int t = 0; t < 3; ++t)
+        rows.push_back(row(concat(side, ' ', r), uint64_t(r), concat('e', e), concat('t', t), true,
+                           900 + side * 20 + r * r * 3 - r * 7 * side + e * 4 * (1 + side) - t * 6 + e * t * 5 % 7,
+                           1000));
+  return rows;
+}
+
+// By a program of its own.
+TEST(Compare, IntervalsOfFewRuns) {
+  const struct {
+    std::vector<int> a, b;
+    double change, low, high;
+  } cases[] = {{{1, 2, 3}, {4, 5}, 0.042, -0.0116100616, 0.0956100616},
+               {{1, 2, 3}, {1, 2, 3}, 0.012, -0.0072326761, 0.0312326761},
+               {{1}, {4, 5, 6}, 0.065, -0.0498881214, 0.1798881214},
+               {{1, 2}, {4}, 0.0385, -0.0608753683, 0.1378753683},
+               {{1}, {1}, 0.019, 0.0107829590, 0.0272170410}};
+  for (const auto& one : cases) {
+    const Comparison c = compare({"a", matrix(made_up(0, one.a))}, {"b", matrix(made_up(1, one.b))}, false);
+    EXPECT_NEAR(c.subsets[0].change, one.change, 1e-12);
+    EXPECT_NEAR(c.subsets[0].interval.low, one.low, 1e-9);
+    EXPECT_NEAR(c.subsets[0].interval.high, one.high, 1e-9);
+  }
+}
+
+TEST(Compare, NeitherRowsNorRunsCountByTheirOrder) {
+  std::vector<MatrixRow> a = made_up(0, {1, 2, 3}), b = made_up(1, {3, 4, 5, 6});
+  for (const bool matched : {false, true}) {
+    if (matched) b = made_up(1, {1, 2, 3});
+    const Interval given = compare({"a", matrix(a)}, {"b", matrix(b)}, false).subsets.back().interval;
+    std::vector<MatrixRow> turned = a, other = b;
+    std::reverse(turned.begin(), turned.end());
+    std::rotate(other.begin(), other.begin() + 17, other.end());
+    const Interval again = compare({"a", matrix(turned)}, {"b", matrix(other)}, false).subsets.back().interval;
+    EXPECT_EQ(given.low, again.low);
+    EXPECT_EQ(given.high, again.high);
+  }
+}
+
+// Two runs of other splits on each side: e is seen by the first and unseen by the second, f the other way round.
+TEST(Compare, RunsOfOtherSplitsCountAPairOnce) {
+  const auto side = [](const std::string& name, int64_t more) {
+    return MatrixSource{name,
+                        matrix({row(name + "1", 1, "e", "t", true, 6 + more), row(name + "1", 1, "f", "t", false, 4),
+                                row(name + "2", 2, "e", "t", false, 2 + more), row(name + "2", 2, "f", "t", true, 8)})};
+  };
+  const Comparison c = compare(side("a", 0), side("b", 2), false);
+  ASSERT_EQ(c.subsets.size(), 3u);
+  const SubsetChange &seen = c.subsets[0], &unseen = c.subsets[1], &all = c.subsets[2];
+  EXPECT_EQ(seen.pairs, 2);
+  EXPECT_DOUBLE_EQ(seen.mean_a, 0.7);    // 6 of 10 and 8 of 10
+  EXPECT_DOUBLE_EQ(unseen.mean_b, 0.4);  // 4 of 10 both
+  EXPECT_EQ(all.pairs, 2) << "not four";
+  EXPECT_EQ(all.better, 1);
+  EXPECT_EQ(all.alike, 1);
+  EXPECT_EQ(all.n_a, 40);
+  EXPECT_DOUBLE_EQ(all.mean_a, 0.5);
+  EXPECT_DOUBLE_EQ(all.mean_b, 0.6);
+  ASSERT_EQ(c.pairs.size(), 2u);
+  EXPECT_EQ(c.pairs[0].k_b, 12);
+  EXPECT_FALSE(c.pairs[0].standing) << "seen by some runs and not by others";
+  const std::string text = comparison_text(c, 1);
+  EXPECT_NE(text.find("Changed most, of 2 pairs:\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("e    t     mixed  8 of 20  12 of 20"), std::string::npos) << text;
+}
+
+TEST(Compare, CountsRowsOfPairsThatStay) {
+  MatrixSource a{"a", matrix({row("a1", 1, "e", "t", true, 6), row("a2", 2, "e", "t", false, 6)})};
+  const MatrixSource b{"b", matrix({row("b1", 1, "e", "t", true, 6), row("b3", 3, "e", "t", true, 6)})};
+  const Comparison c = compare(a, b, false);
+  EXPECT_EQ(c.other_seen.pairs, 0);
+  EXPECT_EQ(c.other_seen.rows, 1);
+  EXPECT_EQ(c.lost_runs, 1);
+  EXPECT_NE(
+      comparison_text(c, 0).find("Left out: 1 row of other pairs seen by one and unseen by the other; 1 run that"),
+      std::string::npos)
+      << comparison_text(c, 0);
+  a.matrix.rows[1].seen = true;
+  a.matrix.rows[1].first_episode = 5;
+  EXPECT_EQ(compare(a, b, false).other_starts.rows, 1);
+}
+
+TEST(Compare, OtherEnvironmentsOfTheSameNameAreLeftOut) {
+  MatrixSource a{"a", matrix({row("a", 1, "e", "t", true, 6), row("a", 1, "f", "t", true, 6)})};
+  MatrixSource b{"b", matrix({row("b", 1, "e", "t", true, 6), row("b", 1, "f", "t", true, 6)})};
+  a.matrix.rows[0].env_hash = "0000000000000001";
+  b.matrix.rows[0].env_hash = "0000000000000002";
+  b.matrix.rows[1].env_hash = "0000000000000003";  // A does not say which f it is
+  const Comparison c = compare(a, b, true);
+  EXPECT_EQ(c.other_env.pairs, 1);
+  EXPECT_EQ(c.pairs.size(), 1u);
+  EXPECT_NE(comparison_text(c, 0).find("1 pair of another environment that goes by the same name"), std::string::npos);
+  a.matrix.rows.resize(1);
+  EXPECT_TRUE(thrown([&] { compare(a, b, true); }).starts_with("65 a and b: other environments go by the same names"));
+  b.matrix.rows[1].env = "e";
+  EXPECT_TRUE(
+      thrown([&] { compare(a, b, true); }).starts_with("65 b: the environment 'e' is not the same in all rows"));
+}
+
+TEST(Compare, NamesTheTemperatures) {
+  MatrixSource a{"a", matrix({row("r", 1, "e", "t", true, 6)})}, b{"b", matrix({row("r", 1, "e", "t", true, 7)})};
+  a.matrix.rows[0].temperature = 0;
+  b.matrix.rows[0].temperature = 0.5;
+  const std::string text = comparison_text(compare(a, b, false), 0);
+  EXPECT_NE(text.find("window 1, temperature 0: 1 run"), std::string::npos) << text;
+  EXPECT_NE(text.find("Actions were drawn at temperature 0 in A, 0.5 in B.\n"), std::string::npos) << text;
+  a.matrix.rows.push_back(b.matrix.rows[0]);
+  EXPECT_TRUE(thrown([&] { compare(a, b, false); }).starts_with("65 a: rows of several temperatures: choose"));
+}
+
+// 400 pairs of 9 in 10 episodes on both sides: none leaves out 0, and by chance 0.9 % of them would.
+TEST(Compare, SaysHowManyChanceAloneWouldMake) {
+  std::vector<MatrixRow> a, b;
+  for (int e = 0; e < 400; ++e) {
+    a.push_back(row("a", 1, concat('e', e), "t", true, 9));
+    b.push_back(row("b", 1, concat('e', e), "t", true, 9));
+  }
+  const std::string text = comparison_text(compare({"a", matrix(a)}, {"b", matrix(b)}, false), 1);
+  EXPECT_NE(text.find("0 of 400 leave out 0; by chance alone it would be about 3.6,"), std::string::npos) << text;
 }
 
 TEST(Compare, RefusesWhatCannotBeCompared) {
@@ -305,25 +509,24 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   MatrixSource b = a;
   b.name = "b.tsv";
   b.matrix.rows[0].world = "kitchen";
-  EXPECT_EQ(thrown([&] { compare(a, b, false, {}); }),
-            "65 b.tsv: found world 'kitchen', expected 'gridworld' as in a.tsv");
+  EXPECT_EQ(thrown([&] { compare(a, b, false); }), "65 b.tsv: found world 'kitchen', expected 'gridworld' as in a.tsv");
   b.matrix.rows = {row("a", 1, "e", "t", true, 5), row("m", 1, "e", "t", true, 5, 10, "mlp")};
   EXPECT_EQ(
-      thrown([&] { compare(a, b, false, {}); }),
+      thrown([&] { compare(a, b, false); }),
       "65 b.tsv: rows of several methods, worlds or windows: choose with synpo-matrix filter what is to be compared");
   b.matrix.rows = {row("b", 1, "e", "t", true, 5)};
   b.matrix.rows[0].eval_seed = 9;
-  EXPECT_EQ(thrown([&] { compare(a, b, false, {}); }),
+  EXPECT_EQ(thrown([&] { compare(a, b, false); }),
             "65 a.tsv and b.tsv have no pair with the same start states (eval_seed, first_episode, episodes) and the "
             "same seen; "
             "--any-start compares other start states, too");
-  EXPECT_EQ(thrown([&] { compare(a, b, true, {}); }), "nothing thrown");
+  EXPECT_EQ(thrown([&] { compare(a, b, true); }), "nothing thrown");
   MatrixSource in_p = a;
   in_p.matrix.rows[0].part = "P";
   b.matrix.rows[0].part = "Q";
-  EXPECT_EQ(thrown([&] { compare(in_p, b, true, {}); }), "65 a.tsv and b.tsv: pair 'e', 't' is in part 'P' and in 'Q'");
+  EXPECT_EQ(thrown([&] { compare(in_p, b, true); }), "65 a.tsv and b.tsv: pair 'e', 't' is in part 'P' and in 'Q'");
   for (const auto& [one, other] : {std::pair(a, in_p), std::pair(in_p, a)}) {
-    const Comparison c = compare(one, other, true, {});
+    const Comparison c = compare(one, other, true);
     EXPECT_EQ(c.subsets.back().name, "P") << "the part that one side has";
   }
 }
@@ -348,7 +551,7 @@ TEST(Margins, WorstFirst) {
   EXPECT_EQ(margins_text(rows, Axis::kTasks, 1).find("21 of 30"), std::string::npos);
   const std::string tsv = written([&](Output& output) { write_margins(output, cols, Axis::kEnvs, 1); });
   EXPECT_NE(tsv.find("gridworld\t1\tsynpo\te\t2\t2\t20\t10\t0.5\t"), std::string::npos) << tsv;
-  EXPECT_NE(tsv.find("\t0.9\t0.1\tNA\tNA\tu\t0.1\n"), std::string::npos) << tsv;
+  EXPECT_NE(tsv.find("\t0.9\t0.1\tNA\tNA\tu\t0.1\tNA\tNA\n"), std::string::npos) << tsv;
 }
 
 TEST(Filter, EveryOptionNarrows) {
@@ -365,7 +568,7 @@ TEST(Filter, EveryOptionNarrows) {
   EXPECT_EQ(left(f), "123");
   f.envs = {"e"};
   EXPECT_EQ(left(f), "12");
-  f.seen = false;
+  f.standings = {Standing::kUnseen};
   EXPECT_EQ(left(f), "2");
   f.inverted = true;
   EXPECT_EQ(left(f), "13");
@@ -382,8 +585,7 @@ TEST(Filter, EveryOptionNarrows) {
   f = {};
   f.parts = {"Q"};
   EXPECT_EQ(left(f), "2");
-  f.seen = true;
-  f.unseen = false;
+  f.standings = {Standing::kSeen};
   EXPECT_EQ(thrown([&] { left(f); }), "65 no row is left of 3, and a matrix has at least one");
   f = {};
   f.envs = {"g"};
@@ -394,6 +596,45 @@ TEST(Filter, EveryOptionNarrows) {
   f = {};
   f.seeds = {7};
   EXPECT_EQ(thrown([&] { left(f); }), "65 the matrix has no seed 7");
+}
+
+TEST(Filter, ByTemperatureAndByWhatIsNew) {
+  Matrix m =
+      matrix({row("r1", 1, "e", "t", true, 1), row("r1", 1, "e", "u", false, 2), row("r1", 1, "f", "t", false, 3)});
+  m.rows[0].temperature = 0;
+  m.rows[1].temperature = 0.5;
+  m.rows[2].is_new = true;
+  const auto left = [&](const RowFilter& filter) {
+    std::string successes;
+    for (const MatrixRow& r : filter_rows(m, filter).rows) successes += std::to_string(r.successes);
+    return successes;
+  };
+  RowFilter f;
+  f.temperatures = {0, 0.5};
+  EXPECT_EQ(left(f), "12");
+  f.temperatures = {1};
+  EXPECT_EQ(thrown([&] { left(f); }), "65 the matrix has no temperature 1");
+  f = {};
+  f.standings = {Standing::kNew};
+  EXPECT_EQ(left(f), "3");
+  f.standings = {Standing::kUnseen};
+  EXPECT_EQ(left(f), "2");
+}
+
+TEST(Margins, NewPairsHaveARateOfTheirOwn) {
+  Matrix m =
+      matrix({row("r1", 1, "e", "t", true, 9), row("r1", 1, "f", "t", false, 5), row("r1", 1, "g", "t", false, 1)});
+  m.rows[2].is_new = true;
+  const auto rows = margins(m, Axis::kTasks);
+  EXPECT_EQ(rows[0].margins[0].unseen.successes, 5);
+  EXPECT_EQ(rows[0].margins[0].new_pairs.successes, 1);
+  EXPECT_NE(margins_text(rows, Axis::kTasks, 9).find("seen %  unseen %  new %\n"), std::string::npos);
+  EXPECT_NE(margins_text(rows, Axis::kTasks, 9).find("90.0      50.0   10.0\n"), std::string::npos);
+  m.rows[0].env_hash = "1";
+  m.rows.push_back(row("r2", 2, "e", "t", true, 9));
+  m.rows[3].env_hash = "2";
+  EXPECT_TRUE(
+      thrown([&] { margins(m, Axis::kEnvs); }).starts_with("65 the environment 'e' is not the same in all rows"));
 }
 
 TEST(Wide, TasksDownAndEnvironmentsAcross) {
