@@ -81,11 +81,11 @@ int body(int argc, char** argv) {
   Progress progress("synpo-eval", "episodes", episodes.size(), quiet);
   EpisodeSink sink;
   if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
-  const std::vector<PairResult> results = evaluate(parallel, *model.policy, world, pairs, episodes,
-                                                   {uint64_t(seed), model.window, temperature}, sink, [&](size_t done) {
-                                                     progress.update(done);
-                                                     stop_if_asked();
-                                                   });
+  const std::vector<Outcomes> results = evaluate(parallel, *model.policy, world, pairs, episodes,
+                                                 {uint64_t(seed), model.window, temperature}, sink, [&](size_t done) {
+                                                   progress.update(done);
+                                                   stop_if_asked();
+                                                 });
   progress.finish();
   if (record) record->finish();
   if (!output) return 0;
@@ -94,7 +94,7 @@ int body(int argc, char** argv) {
   const std::string run = hex(checkpoint.weights_hash());
   int64_t new_pairs = 0;
   for (size_t p = 0; p < pairs.size(); ++p) {
-    const PairResult& r = results[p];
+    const Outcomes& r = results[p];
     matrix.has_part |= !rows[p].part.empty();
     MatrixRow row;
     row.run = run;

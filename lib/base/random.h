@@ -21,7 +21,7 @@ enum class Purpose : uint32_t {
   kDropout,
   kOwnMove,
   kSample,
-  kLane,
+  kActor,
   kLayout
 };
 

@@ -127,8 +127,7 @@ void Adaptation::add(const Episode& episode) {
   running.start(episode.pair, episode.start);
   for (size_t t = 0; t < episode.actions.size(); ++t) {
     observations_.resize(observations_.size() + size);
-    world_.observe(episode.pair.env, running.history, model_.window,
-                   observations_.data() + observations_.size() - size);
+    running.observe(world_, model_.window, observations_.data() + observations_.size() - size);
     env_.push_back(episode.pair.env);
     task_.push_back(episode.pair.task);
     label_.push_back(episode.labels[t]);

@@ -208,7 +208,7 @@ Checkpoint Imitation::checkpoint(bool with_training_state) const {
   add_tensors(c.file, "train/v/", parameters, second_moment_.data());
   const uint64_t position[4] = {stream_lines_, stream_hash_, uint64_t(total_updates_), seen_grows_};
   c.file.add("train/position", {4}, position, 4);
-  memory_.save(c.file, "train/memory/");
+  memory_.save(c.file, "train/memory/", world_);
   if (options_.batch_states > 0) running_.save(c.file, "train/running/");
   return c;
 }

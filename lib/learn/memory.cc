@@ -5,6 +5,18 @@
 #include "base/error.h"
 
 namespace synpo {
+namespace {
+
+// An episode in a checkpoint is [env, task, the start's bytes, steps], then its actions and its labels, a byte each.
+// Env and steps are two bytes, the low one first, and so is the task in a world that has more than 256.
+constexpr size_t kEnvBytes = 2, kStepsBytes = 2;
+struct Head {
+  explicit Head(const World& world) : task_bytes(world.task_count() > 256 ? 2 : 1), state_bytes(world.state_bytes()) {}
+  size_t size() const { return kEnvBytes + task_bytes + state_bytes + kStepsBytes; }
+  size_t task_bytes, state_bytes;
+};
+
+}  // namespace
 
 void ReplayMemory::add(Episode episode) {
   const size_t place = added_ % capacity_;
@@ -16,13 +28,14 @@ void ReplayMemory::add(Episode episode) {
   serials_[place] = added_++;
 }
 
-// An episode is [env low, env high, task, the start's bytes, steps low, steps high], then its actions and labels.
-void ReplayMemory::save(SafeTensors& file, const std::string& prefix) const {
+void ReplayMemory::save(SafeTensors& file, const std::string& prefix, const World& world) const {
+  const Head head(world);
   std::vector<uint8_t> bytes;
   for (const Episode& e : episodes_) {
     const size_t steps = e.actions.size();
     bytes.insert(bytes.end(), {uint8_t(e.pair.env), uint8_t(e.pair.env >> 8), uint8_t(e.pair.task)});
-    bytes.insert(bytes.end(), e.start.bytes.begin(), e.start.bytes.end());
+    if (head.task_bytes > 1) bytes.push_back(uint8_t(e.pair.task >> 8));
+    bytes.insert(bytes.end(), e.start.bytes.begin(), e.start.bytes.begin() + std::ptrdiff_t(head.state_bytes));
     bytes.insert(bytes.end(), {uint8_t(steps), uint8_t(steps >> 8)});
     bytes.insert(bytes.end(), e.actions.begin(), e.actions.end());
     bytes.insert(bytes.end(), e.labels.begin(), e.labels.end());
@@ -37,18 +50,21 @@ void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, cons
   serials_ = file.get<uint64_t>(prefix + "serials");
   file.get(prefix + "added", &added_, 1);
   episodes_.clear();
-  constexpr size_t kPair = 3, kStart = std::tuple_size_v<decltype(WorldState::bytes)>, kHead = kPair + kStart + 2;
+  const Head head(world);
   const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "episodes' is malformed"); };
   for (size_t at = 0; at < bytes.size();) {
-    if (bytes.size() - at < kHead) bad();
-    const uint8_t* head = bytes.data() + at;
+    if (bytes.size() - at < head.size()) bad();
+    const uint8_t* from = bytes.data() + at;
     Episode e;
-    e.pair = {head[0] | head[1] << 8, head[2]};
+    e.pair = {from[0] | from[1] << 8, from[2]};
+    if (head.task_bytes > 1) e.pair.task |= from[3] << 8;
     if (e.pair.env >= world.envs() || e.pair.task >= world.task_count()) bad();
-    std::copy_n(head + kPair, kStart, e.start.bytes.begin());
+    from += kEnvBytes + head.task_bytes;
+    std::copy_n(from, head.state_bytes, e.start.bytes.begin());
     if (!world.valid(e.pair, e.start)) bad();
-    const size_t steps = head[kPair + kStart] | head[kPair + kStart + 1] << 8;
-    at += kHead;
+    from += head.state_bytes;
+    const size_t steps = from[0] | from[1] << 8;
+    at += head.size();
     if (steps < 1 || steps > size_t(kStepLimit) || bytes.size() - at < 2 * steps) bad();
     e.actions.assign(bytes.begin() + at, bytes.begin() + at + steps);
     e.labels.assign(bytes.begin() + at + steps, bytes.begin() + at + 2 * steps);
@@ -58,7 +74,7 @@ void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, cons
     episodes_.push_back(std::move(e));
   }
   if (episodes_.size() > capacity_ || serials_.size() != episodes_.size()) bad();
-  // Until the memory is full, the next episode goes behind the last one.
+  // Until the memory is full, the next episode comes after the last one.
   if (added_ < episodes_.size() || (added_ > episodes_.size() && episodes_.size() < capacity_)) bad();
 }
 

@@ -13,11 +13,11 @@ class ReplayMemory {
   void add(Episode episode);
   size_t size() const { return episodes_.size(); }
   const Episode& operator[](size_t i) const { return episodes_[i]; }
-  // Number of the trajectory at position i, counted from the stream's first: it tells whether the place has been taken
+  // Number of the trajectory at position i, counted from the stream's first: another one where the place has been taken
   // over since.
   uint64_t serial(size_t i) const { return serials_[i]; }
 
-  void save(SafeTensors& file, const std::string& prefix) const;
+  void save(SafeTensors& file, const std::string& prefix, const World& world) const;
   // Throws kData for what no save() wrote.
   void load(const SafeTensors& file, const std::string& prefix, const World& world);
 

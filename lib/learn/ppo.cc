@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "base/error.h"
 #include "base/take_rows.h"
@@ -103,7 +104,7 @@ class Ppo::RolloutObjective : public Objective<float> {
 
 Ppo::Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed)
     : world_(world), parallel_(parallel), options_(options), seed_(seed), model_(std::move(model)),
-      lanes_(world, model_.seen, options.lanes, model_.window, seed) {
+      actors_(world, model_.seen, options.lanes, seed) {
   if (size() % options_.minibatches != 0)
     fail(Exit::kUsage, size(), " steps of a rollout cannot be cut into ", options_.minibatches, " minibatches");
   value_ = std::make_unique<Perceptron<float>>("value", value_inputs(), options_.value_hidden, 1, value_layout_);
@@ -152,12 +153,13 @@ void Ppo::measure_statistics(int batches) {
     const std::vector<float> reward(n, 0);
     Random random(seed_, Purpose::kNoise, 0, uint64_t(batch));
     for (int i = 0; i < n; ++i) {
-      const int lane = i % lanes_.count();
-      lanes_.observe(lane, observations.data() + i * world_.observation_size());
-      env[i] = lanes_.pairs()[lanes_.pair(lane)].env;
-      task[i] = lanes_.pairs()[lanes_.pair(lane)].task;
+      const int actor = i % actors_.count();
+      const RunningEpisode& episode = actors_.episodes()[actor];
+      episode.observe(world_, model_.window, observations.data() + i * world_.observation_size());
+      env[i] = episode.pair.env;
+      task[i] = episode.pair.task;
       action[i] = int(random.below(uint32_t(actions)));
-      if (lanes_.step(lane, action[i]).ended()) lanes_.restart(lane);
+      if (actors_.step(actor, action[i]).ended()) actors_.restart(actor);
     }
     logits.resize(size_t(n) * actions);
     const StepBatch<float> steps = {.size = n,
@@ -170,26 +172,26 @@ void Ppo::measure_statistics(int batches) {
     model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(),
                         logits.data());
   }
-  lanes_.take_finished();
+  actors_.take_finished();
 }
 
-void Ppo::look(const std::vector<int>& lanes, uint8_t* observations, float* logits, float* psi, float* values) {
-  const int n = int(lanes.size()), d = model_.shape.feature, in = value_inputs(), actions = world_.actions();
-  // As many as may be at once: every batch reads all weights. A lane's scores do not depend on who is with it.
+void Ppo::look(const std::vector<int>& actors, uint8_t* observations, float* logits, float* psi, float* values) {
+  const int n = int(actors.size()), d = model_.shape.feature, in = value_inputs(), actions = world_.actions();
+  // As many as may be at once: every batch reads all weights. An actor's scores do not depend on who is with it.
   const int together = std::min(Policy<float>::kInferenceUnit, (n + parallel_.threads() - 1) / parallel_.threads());
   parallel_.run(shard_count(n, together), [&](int shard, int thread) {
     const Range range = shard_range(n, together, shard);
-    std::vector<int> pair(range.size());
+    const std::span<const int> part(actors.data() + range.begin, size_t(range.size()));
+    uint8_t* seen = observations + range.begin * world_.observation_size();
+    actors_.episodes().observe(part, model_.window, seen);
+    std::vector<int> pair;
+    for (const int actor : part) pair.push_back(actors_.pair_number(actor));
     std::vector<float> x(size_t(range.size()) * in);
     Buffer<float> scratch;
+    model_.policy->infer(thread, range.size(), seen, pair.data(), logits + size_t(range.begin) * actions,
+                         psi + size_t(range.begin) * d);
     for (int i = range.begin; i < range.end; ++i) {
-      lanes_.observe(lanes[i], observations + i * world_.observation_size());
-      pair[i - range.begin] = lanes_.pair(lanes[i]);
-    }
-    model_.policy->infer(thread, range.size(), observations + range.begin * world_.observation_size(), pair.data(),
-                         logits + size_t(range.begin) * actions, psi + size_t(range.begin) * d);
-    for (int i = range.begin; i < range.end; ++i) {
-      const EnvTask at = lanes_.pairs()[lanes_.pair(lanes[i])];
+      const EnvTask at = actors_.episodes()[actors[i]].pair;
       make_value_input(psi + size_t(i) * d, at.env, at.task, x.data() + size_t(i - range.begin) * in);
     }
     value_->infer(range.size(), x.data(), values + range.begin, scratch);
@@ -197,44 +199,44 @@ void Ppo::look(const std::vector<int>& lanes, uint8_t* observations, float* logi
 }
 
 void Ppo::collect() {
-  const int lanes = options_.lanes, d = model_.shape.feature;
+  const int count = actors_.count(), d = model_.shape.feature;
   Rollout& r = rollout_;
   r.observations.resize(size() * world_.observation_size());
   for (std::vector<int>* values : {&r.env, &r.task, &r.action}) values->resize(size());
   for (std::vector<float>* values : {&r.log_probability, &r.reward, &r.value, &r.cut_value}) values->assign(size(), 0);
-  r.last_value.resize(lanes);
+  r.last_value.resize(count);
   r.end.assign(size(), StepEnd::kGoesOn);
   std::vector<std::pair<int, int>> pairs;
-  for (const EnvTask& pair : lanes_.pairs()) pairs.emplace_back(pair.env, pair.task);
+  for (const EnvTask& pair : actors_.pairs()) pairs.emplace_back(pair.env, pair.task);
   model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), pairs);
   value_->prepare_inference(value_parameters_.data());
 
   const int actions = world_.actions();
   std::vector<double> p(actions);
-  std::vector<int> all(lanes);
+  std::vector<int> all(count);
   std::iota(all.begin(), all.end(), 0);
-  std::vector<float> logits(size_t(lanes) * actions), psi(size_t(lanes) * d);
-  std::vector<uint8_t> spare(lanes * world_.observation_size());
+  std::vector<float> logits(size_t(count) * actions), psi(size_t(count) * d);
+  std::vector<uint8_t> spare(count * world_.observation_size());
   for (int t = 0; t < options_.rollout; ++t) {
-    const size_t first = size_t(t) * lanes;
+    const size_t first = size_t(t) * count;
     look(all, r.observations.data() + first * world_.observation_size(), logits.data(), psi.data(),
          r.value.data() + first);
     std::vector<int> cut;
-    for (int lane = 0; lane < lanes; ++lane) {
-      const size_t at = first + lane;
-      const EnvTask pair = lanes_.pairs()[lanes_.pair(lane)];
-      const float* scores = logits.data() + size_t(lane) * actions;
+    for (int actor = 0; actor < count; ++actor) {
+      const size_t at = first + actor;
+      const EnvTask pair = actors_.episodes()[actor].pair;
+      const float* scores = logits.data() + size_t(actor) * actions;
       const double log_sum = softmax(scores, actions, 1, p.data());
       const int action = draw(p.data(), actions,
-                              Random(seed_, Purpose::kSample, uint64_t(lane), uint64_t(steps_ / lanes + t)).uniform());
+                              Random(seed_, Purpose::kSample, uint64_t(actor), uint64_t(steps_ / count + t)).uniform());
       r.env[at] = pair.env;
       r.task[at] = pair.task;
       r.action[at] = action;
       r.log_probability[at] = float(scores[action] - log_sum);
-      const WorldStep step = lanes_.step(lane, action);
+      const WorldStep step = actors_.step(actor, action);
       r.reward[at] = float(step.reward_cents) / 100;
-      if (step.terminated) lanes_.restart(lane);
-      if (step.truncated) cut.push_back(lane);
+      if (step.terminated) actors_.restart(actor);
+      if (step.truncated) cut.push_back(actor);
       r.end[at] = step.terminated ? StepEnd::kTerminated : step.truncated ? StepEnd::kTruncated : StepEnd::kGoesOn;
     }
     if (cut.empty()) continue;
@@ -242,14 +244,14 @@ void Ppo::collect() {
     look(cut, spare.data(), logits.data(), psi.data(), cut_values.data());
     for (size_t i = 0; i < cut.size(); ++i) {
       r.cut_value[first + cut[i]] = cut_values[i];
-      lanes_.restart(cut[i]);
+      actors_.restart(cut[i]);
     }
   }
   look(all, spare.data(), logits.data(), psi.data(), r.last_value.data());
   steps_ += size();
 
   r.advantage = advantages(
-      {options_.rollout, lanes, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()},
+      {options_.rollout, count, r.reward.data(), r.value.data(), r.end.data(), r.cut_value.data(), r.last_value.data()},
       options_.gae);
   r.target.resize(size());
   double sum = 0, squares = 0, target_sum = 0, target_squares = 0;
@@ -333,7 +335,7 @@ PpoReport Ppo::take_report() {
   PpoReport report = std::exchange(report_, {});
   report.updates = updates_;
   report.steps = steps_;
-  report.finished = lanes_.take_finished();
+  report.finished = actors_.take_finished();
   report.explained_variance /= std::max(1, reported_rollouts_);
   for (double* mean : {&report.policy, &report.value, &report.entropy, &report.kl, &report.clip_fraction})
     *mean /= std::max(1, reported_minibatches_);
@@ -350,7 +352,7 @@ Checkpoint Ppo::checkpoint(bool with_training_state) const {
   add_tensors(c.file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   add_tensors(c.file, "train/ppo/", value_layout_, value_parameters_.data());
   add_tensors(c.file, "train/ppo/value/v/", value_layout_, value_v_.data());
-  lanes_.save(c.file, "train/ppo/lanes/");
+  actors_.save(c.file, "train/ppo/lanes/");
   const int64_t position[3] = {updates_, steps_, int64_t(seed_)};
   c.file.add("train/ppo/position", {3}, position, 3);
   return c;
@@ -371,7 +373,7 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());
   get_tensors(file, "train/ppo/value/v/", value_layout_, value_v_.data());
-  lanes_.load(file, "train/ppo/lanes/");
+  actors_.load(file, "train/ppo/lanes/");
   int64_t position[3];
   file.get("train/ppo/position", position, 3);
   constexpr int64_t kMost = int64_t(1) << 53;

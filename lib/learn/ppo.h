@@ -17,7 +17,7 @@
 #include "learn/gae.h"
 #include "nn/layers/perceptron.h"
 #include "nn/rmsprop.h"
-#include "play/lanes.h"
+#include "play/actors.h"
 #include "play/model.h"
 
 namespace synpo {
@@ -43,7 +43,7 @@ LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwis
 // Means since the report before.
 struct PpoReport {
   int64_t updates = 0, steps = 0;
-  Lanes::Finished finished;
+  Outcomes finished;
   double policy = 0, value = 0, entropy = 0, kl = 0, clip_fraction = 0, explained_variance = 0;
 };
 
@@ -83,8 +83,8 @@ class Ppo {
   int size() const { return options_.lanes * options_.rollout; }
   int value_inputs() const;
   void make_value_input(const float* psi, int env, int task, float* x) const;
-  // Scores, psi and values of the states in these lanes.
-  void look(const std::vector<int>& lanes, uint8_t* observations, float* logits, float* psi, float* values);
+  // Scores, psi and values where these actors stand.
+  void look(const std::vector<int>& actors, uint8_t* observations, float* logits, float* psi, float* values);
   void collect();
   void learn_minibatch(const std::vector<int>& rows, bool value_alone);
 
@@ -97,7 +97,7 @@ class Ppo {
   std::unique_ptr<Perceptron<float>> value_;
   std::vector<float> value_parameters_, value_gradient_, value_v_;
   Buffer<float> gradient_, v_;
-  Lanes lanes_;
+  Actors actors_;
   Rollout rollout_;
   int64_t updates_ = 0, steps_ = 0;
   Minibatch last_, first_;

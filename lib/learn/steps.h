@@ -11,7 +11,7 @@
 
 #include "base/parallel.h"
 #include "learn/memory.h"
-#include "play/running_episode.h"
+#include "play/episode_batch.h"
 #include "policy/policy.h"
 
 namespace synpo {
@@ -28,6 +28,9 @@ struct Minibatch {
   std::vector<float> planner_q;
   int size() const { return int(env.size()); }
   void resize(const World& world, int size);
+  // Sample `at`: where an episode stands, what its right action is there, and the one taken, with what came of it.
+  void put(int at, const World& world, const RunningEpisode& episode, int window, int right, int action,
+           const WorldStep& step);
 };
 
 class TrajectoryDraw {
@@ -40,7 +43,7 @@ class TrajectoryDraw {
 struct RunningOptions {
   int episodes = 8192;        // that run side by side
   double balance = 1;         // probability of taking a step on which nothing could be taken
-  double roll_in = 0;         // probability of the learner's own greedy move behind a taken step
+  double roll_in = 0;         // probability of the learner's own greedy move after a taken step
   double noise = 0;           // probability of a random move otherwise
   bool fresh_starts = false;  // agent and things are placed anew; the memory then gives the pair alone
   int step_limit = kStepLimit;
@@ -49,12 +52,12 @@ struct RunningOptions {
 class RunningDraw {
  public:
   RunningDraw(const World& world, const RunningOptions& options, uint64_t seed)
-      : world_(&world), options_(options), seed_(seed) {}
+      : world_(&world), options_(options), seed_(seed), episodes_(world) {}
 
   // Takes over probabilities; the number of episodes stays.
   void set_options(const RunningOptions& options) { options_ = options; }
   // The next `count` running episodes, each at its next step to be taken. Where the batch needs next steps, half as
-  // many, and the steps behind them, as the taken actions lead there.
+  // many, and the steps after them, as the taken actions lead there.
   void draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch);
   // Moves the episodes of the last draw() on, given the learner's greedy actions [count].
   void advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update);
@@ -64,28 +67,33 @@ class RunningDraw {
   void load(const SafeTensors& file, const std::string& prefix, const ReplayMemory& memory);
 
  private:
-  struct Running {
-    RunningEpisode episode;
-    uint64_t serial;  // of the trajectory that is followed
-    uint32_t place;   // in the memory
-    uint32_t restarts;
-    bool following;  // actions so far are the trajectory's
-    bool started;
+  // How a running episode goes with the trajectory that it started as.
+  struct Track {
+    uint64_t serial = 0;  // of the trajectory
+    uint32_t place = 0;   // in the memory
+    uint32_t restarts = 0;
+    bool following = false;  // actions so far are the trajectory's
+    bool started = false;
   };
-  WorldStep put(const ReplayMemory& memory, const Running& running, int action, int window, int at,
-                Minibatch& batch) const;
-  void restart(const ReplayMemory& memory, Running& running, uint32_t number);
+  struct Choice {
+    int label, move;
+  };
   // The trajectory whose next action is the episode's next; null where it has left it, or the memory has.
-  static const Episode* followed(const ReplayMemory& memory, const Running& running);
-  void label_and_move(const ReplayMemory& memory, const Running& running, int& label, int& move) const;
-  WorldStep move_on(const ReplayMemory& memory, Running& running, int action) const;
+  static const Episode* followed(const ReplayMemory& memory, const RunningEpisode& episode, const Track& track);
+  // The right action, and the one that is taken without noise and the learner.
+  Choice choose(const ReplayMemory& memory, const RunningEpisode& episode, const Track& track) const;
+  WorldStep move_on(const ReplayMemory& memory, RunningEpisode& episode, Track& track, int action) const;
+  void restart(const ReplayMemory& memory, uint32_t number);
   // One step; restarts where the episode ends.
-  void step(const ReplayMemory& memory, Running& running, uint32_t number, int action);
+  void step(const ReplayMemory& memory, uint32_t number, int action);
+  // Goes on to the next step that is to be taken; its choice.
+  Choice go_on(const ReplayMemory& memory, uint32_t number, int64_t update);
 
   const World* world_;
   RunningOptions options_;
   uint64_t seed_;
-  std::vector<Running> running_;
+  EpisodeBatch episodes_;
+  std::vector<Track> tracks_;    // of the episodes
   size_t next_ = 0;              // the episode whose turn it is
   std::vector<uint32_t> drawn_;  // of the last draw()
   std::vector<int> moves_;       // what those would do without the learner

@@ -20,8 +20,15 @@ WorldState episode_start(const World& world, EnvTask pair, uint64_t seed, Purpos
   return world.reset(pair.env, random);
 }
 
-Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents,
-                         const WorldStep& last, uint64_t seed, int64_t number, int window) {
+void EpisodeRecord::add(int label, int action, const WorldStep& step) {
+  episode.labels.push_back(uint8_t(label));
+  episode.actions.push_back(uint8_t(action));
+  reward_cents.push_back(step.reward_cents);
+  last = step;
+}
+
+Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64_t seed, int64_t number, int window) {
+  const Episode& episode = record.episode;
   const Environment& env = world.environments()[episode.pair.env];
   Trajectory t;
   t.world = world.name();
@@ -35,28 +42,23 @@ Trajectory to_trajectory(const World& world, const Episode& episode, const std::
   t.start = world.start_places(episode.pair.env, episode.start);
   t.actions = episode.actions;
   if (episode.labels != episode.actions) t.labels = episode.labels;
-  t.reward_cents = reward_cents;
-  t.success = last.success;
-  t.terminated = last.terminated;
-  t.truncated = last.truncated;
+  t.reward_cents = record.reward_cents;
+  t.success = record.last.success;
+  t.terminated = record.last.terminated;
+  t.truncated = record.last.truncated;
   return t;
 }
 
 Trajectory expert_episode(const World& world, EnvTask pair, uint64_t seed, int64_t episode, double noise, int window) {
   Random random(seed, Purpose::kNoise, world.pair_number(pair), uint64_t(episode));
-  Episode played = {pair, episode_start(world, pair, seed, Purpose::kEpisodeStart, episode), {}, {}};
-  std::vector<int> rewards;
-  WorldState state = played.start;
-  WorldStep step = {};
-  while (!step.ended()) {
+  WorldState state = episode_start(world, pair, seed, Purpose::kEpisodeStart, episode);
+  EpisodeRecord record(pair, state);
+  while (!record.last.ended()) {
     const int label = world.expert(pair, state);
     const int action = noise > 0 && random.uniform() < noise ? int(random.below(uint32_t(world.moves()))) : label;
-    played.labels.push_back(uint8_t(label));
-    played.actions.push_back(uint8_t(action));
-    step = world.step(pair, state, action);
-    rewards.push_back(step.reward_cents);
+    record.add(label, action, world.step(pair, state, action));
   }
-  return to_trajectory(world, played, rewards, step, seed, episode, window);
+  return to_trajectory(world, record, seed, episode, window);
 }
 
 Episode replay(const World& world, const Trajectory& t) {

@@ -31,9 +31,18 @@ Episode replay(const World& world, const Trajectory& trajectory);
 // The same trajectory with the expert's labels.
 Trajectory relabelled(const World& world, const Trajectory& trajectory);
 
-// File form of an episode that was played: `rewards` as the world gave them, `last` its last step.
-Trajectory to_trajectory(const World& world, const Episode& episode, const std::vector<int>& reward_cents,
-                         const WorldStep& last, uint64_t seed, int64_t number, int window);
+// An episode as it is played, step by step.
+struct EpisodeRecord {
+  EpisodeRecord() = default;
+  EpisodeRecord(EnvTask pair, const WorldState& start) : episode{pair, start, {}, {}} {}
+  void add(int label, int action, const WorldStep& step);
+
+  Episode episode;
+  std::vector<int> reward_cents;
+  WorldStep last = {};
+};
+// Its file form, as number `number` of its pair and seed.
+Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64_t seed, int64_t number, int window);
 
 // Pairs by name to pairs by position; rows with seen = 0 are left out where `seen_only`. Throws kData for an unknown
 // name.

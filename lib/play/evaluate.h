@@ -7,13 +7,9 @@
 #include "format/run_log.h"
 #include "format/trajectory.h"
 #include "play/model.h"
+#include "play/running_episode.h"
 
 namespace synpo {
-
-struct PairResult {
-  int64_t episodes = 0, successes = 0, wrong = 0, timeouts = 0, reward_cents = 0, length = 0;
-  void add(const PairResult& other);
-};
 
 // An episode to run: start state from (seed, kEvaluation, pair, number).
 struct EvalEpisode {
@@ -32,10 +28,10 @@ using EpisodeSink = std::function<void(const Trajectory&)>;
 
 // Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the
 // order of `pairs`; neither threads nor what else is in the list changes an episode.
-std::vector<PairResult> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
-                                 const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
-                                 const EvalOptions& options, const EpisodeSink& sink = nullptr,
-                                 const std::function<void(size_t done)>& progress = nullptr);
+std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
+                               const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
+                               const EvalOptions& options, const EpisodeSink& sink = nullptr,
+                               const std::function<void(size_t done)>& progress = nullptr);
 
 // Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at
 // random, an episode each; the same ones at every call while no pair is seen that was not. Unseen are pairs of an

@@ -20,9 +20,10 @@ struct EnvTask {
   bool operator==(const EnvTask&) const = default;
 };
 
-// What the bytes mean, the world alone knows; those that it does not use are zero.
+// What the bytes mean, the world alone knows; from World::state_bytes() on they are zero.
 struct WorldState {
-  std::array<uint8_t, 14> bytes = {};
+  static constexpr size_t kMostBytes = 62;
+  std::array<uint8_t, kMostBytes> bytes = {};
   uint16_t steps = 0;  // taken in the episode
   bool operator==(const WorldState&) const = default;
 };
@@ -73,6 +74,8 @@ class World {
   virtual const std::vector<std::string>& action_names() const = 0;
   virtual int moves() const = 0;
 
+  // Of a WorldState, as checkpoints hold it: at most WorldState::kMostBytes.
+  virtual size_t state_bytes() const = 0;
   virtual WorldState reset(int env, Random& random) const = 0;
   virtual WorldStep step(EnvTask pair, WorldState& state, int action) const = 0;
   // The planner's action; ties go to the first in the order of the actions.

@@ -182,7 +182,7 @@ double world_rate(const std::string& name) {
       running.start(pair, episode_start(*world, pair, 1, Purpose::kEpisodeStart, int64_t(episode++)));
       WorldStep step = {};
       while (!step.ended()) {
-        world->observe(pair.env, running.history, 1, observation.data());
+        running.observe(*world, 1, observation.data());
         step = running.step(*world, world->expert(pair, running.now()));
         ++steps;
       }

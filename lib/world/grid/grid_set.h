@@ -31,6 +31,7 @@ class GridSet : public World {
   const std::vector<std::string>& action_names() const override;
   int moves() const override { return kPick; }
 
+  size_t state_bytes() const override { return kGridStateBytes; }
   WorldState reset(int env, Random& random) const override;
   WorldStep step(EnvTask pair, WorldState& state, int action) const override;
   int expert(EnvTask pair, const WorldState& state) const override;

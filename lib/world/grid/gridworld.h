@@ -31,6 +31,9 @@ struct GridFrame {
   bool operator==(const GridFrame&) const = default;
 };
 
+// In checkpoints; more than a state fills.
+constexpr size_t kGridStateBytes = 14;
+
 struct GridState {
   GridFrame now;
   uint8_t picked = 0;  // treasures of the task picked so far, 0 to 2

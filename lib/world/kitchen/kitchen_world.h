@@ -21,6 +21,7 @@ class KitchenWorld : public World {
   const std::vector<std::string>& action_names() const override;
   int moves() const override { return kKitchenMoves; }
 
+  size_t state_bytes() const override { return kKitchenStateBytes; }
   WorldStep step(EnvTask pair, WorldState& state, int action) const override;
   int expert(EnvTask pair, const WorldState& state) const override;
   void action_values(EnvTask pair, const WorldState& state, int* cents) const override;

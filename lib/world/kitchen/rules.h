@@ -41,7 +41,8 @@ struct KitchenState {
   bool operator==(const KitchenState&) const = default;
 };
 
-// A world's bytes: the pose in two, low one first, then doors, hand, slots, the layout in two; the rest is zero.
+// The pose in two bytes, low one first, then doors, hand, slots, the layout in two, and a zero.
+constexpr size_t kKitchenStateBytes = 14;
 WorldState pack(const KitchenState& state);
 KitchenState unpack(const WorldState& state);
 

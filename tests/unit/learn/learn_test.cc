@@ -266,7 +266,7 @@ TEST(Memory, KeepsTheLast) {
 
 SafeTensors saved(const ReplayMemory& memory) {
   SafeTensors file;
-  memory.save(file, "m/");
+  memory.save(file, "m/", builtin_world());
   return file;
 }
 

@@ -534,7 +534,7 @@ TEST_P(RunningDrawSaved, HasTheSameFuture) {
     if (pause > 0) future(running, memory, 2, pause == 3 ? 0 : 23, pause);
     SafeTensors file;
     running.save(file, "r/");
-    memory.save(file, "m/");
+    memory.save(file, "m/", builtin_world());
     ReplayMemory other_memory(25);
     other_memory.load(file, "m/", builtin_world());
     RunningDraw other(builtin_world(), options, 1);
@@ -589,10 +589,10 @@ TEST(RunningDraw, RefusesWhatNoSaveWrote) {
             malformed);
   // The pair and the number of remembered states; then the newest state's agent, which may not stand in a corner of the
   // maze.
-  for (const size_t at :
-       {size_t(0), size_t(1), size_t(2), size_t(3), size_t(4), RunningEpisode::kBytes - sizeof(WorldState)}) {
+  const size_t bytes_each = episodes.size() / 40, newest = bytes_each - kGridStateBytes - 2;
+  for (const size_t at : {size_t(0), size_t(1), size_t(2), size_t(3), size_t(4), newest}) {
     std::vector<uint8_t> damaged = episodes;
-    damaged[7 * RunningEpisode::kBytes + at] = 255;
+    damaged[7 * bytes_each + at] = 255;
     EXPECT_EQ(refused([&](SafeTensors& file) {
                 file.add("r/episodes", {int64_t(damaged.size())}, damaged.data(), damaged.size());
               }),

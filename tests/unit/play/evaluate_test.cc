@@ -14,6 +14,12 @@
 #include "world/grid/view.h"
 
 namespace synpo {
+
+void PrintTo(const Outcomes& o, std::ostream* to) {
+  *to << o.episodes << " episodes, " << o.successes << " successes, " << o.wrong << " wrong, " << o.timeouts
+      << " timeouts, " << o.reward_cents << " cents, length " << o.length;
+}
+
 namespace {
 
 // Scores by a function of what the policy is given: the picture and the pair's number.
@@ -58,26 +64,21 @@ std::vector<EvalEpisode> episodes_of(int64_t first, int64_t count) {
   return episodes;
 }
 
-bool same(const PairResult& a, const PairResult& b) {
-  return a.episodes == b.episodes && a.successes == b.successes && a.wrong == b.wrong && a.timeouts == b.timeouts &&
-         a.reward_cents == b.reward_cents && a.length == b.length;
-}
-
-std::vector<PairResult> run(FunctionPolicy::Scores scores, const std::vector<EvalEpisode>& episodes, int threads,
-                            const EvalOptions& options = {}) {
+std::vector<Outcomes> run(FunctionPolicy::Scores scores, const std::vector<EvalEpisode>& episodes, int threads,
+                          const EvalOptions& options = {}) {
   Parallel parallel(threads);
   FunctionPolicy policy(scores);
   return evaluate(parallel, policy, builtin_world(), kPairs, episodes, options);
 }
 
 // One episode played by itself.
-PairResult played(FunctionPolicy::Scores scores, const EvalEpisode& episode, const EvalOptions& options) {
+Outcomes played(FunctionPolicy::Scores scores, const EvalEpisode& episode, const EvalOptions& options) {
   const EnvTask pair = kPairs[episode.pair];
   const Maze& maze = builtin_world().maze(pair.env);
   GridState state =
       to_grid_state(episode_start(builtin_world(), pair, options.seed, Purpose::kEvaluation, episode.number));
   std::vector<GridFrame> frames = {state.now};
-  PairResult result;
+  Outcomes result;
   result.episodes = 1;
   while (true) {
     float score[kGridActions];
@@ -96,12 +97,12 @@ PairResult played(FunctionPolicy::Scores scores, const EvalEpisode& episode, con
 TEST(Evaluate, AgreesWithEpisodesPlayedOneByOne) {
   for (const EvalOptions& options : {EvalOptions{1, 1}, EvalOptions{2, 0}}) {
     const std::vector<EvalEpisode> episodes = episodes_of(10, 60);
-    std::vector<PairResult> want(kPairs.size());
+    std::vector<Outcomes> want(kPairs.size());
     for (const EvalEpisode& episode : episodes) want[episode.pair].add(played(hashed, episode, options));
-    const std::vector<PairResult> got = run(hashed, episodes, 1, options);
+    const std::vector<Outcomes> got = run(hashed, episodes, 1, options);
     int64_t wrong = 0, timeouts = 0;
     for (size_t p = 0; p < kPairs.size(); ++p) {
-      EXPECT_TRUE(same(got[p], want[p])) << p;
+      EXPECT_EQ(got[p], want[p]) << p;
       EXPECT_EQ(got[p].episodes, 60);
       EXPECT_EQ(got[p].successes + got[p].wrong + got[p].timeouts, 60);
       wrong += got[p].wrong;
@@ -146,34 +147,34 @@ TEST(Evaluate, DrawsDependNeitherOnThreadsNorOnOrder) {
   EvalOptions options;
   options.temperature = 1;
   const std::vector<EvalEpisode> episodes = episodes_of(0, 70);
-  const std::vector<PairResult> one = run(uneven, episodes, 1, options);
-  const std::vector<PairResult> two =
+  const std::vector<Outcomes> one = run(uneven, episodes, 1, options);
+  const std::vector<Outcomes> two =
       run(uneven, std::vector<EvalEpisode>(episodes.rbegin(), episodes.rend()), 2, options);
-  for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_TRUE(same(one[p], two[p])) << p;
+  for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_EQ(one[p], two[p]) << p;
 }
 
 TEST(Evaluate, DependsNeitherOnThreadsNorOnOrderNorOnOtherEpisodes) {
   // Enough for several lists that refill their lanes.
   const std::vector<EvalEpisode> episodes = episodes_of(0, 220);
-  const std::vector<PairResult> all = run(hashed, episodes, 1);
+  const std::vector<Outcomes> all = run(hashed, episodes, 1);
   std::vector<EvalEpisode> reversed(episodes.rbegin(), episodes.rend());
-  const std::vector<PairResult> two = run(hashed, episodes, 2), other_order = run(hashed, reversed, 2);
-  std::vector<PairResult> parts(kPairs.size());
+  const std::vector<Outcomes> two = run(hashed, episodes, 2), other_order = run(hashed, reversed, 2);
+  std::vector<Outcomes> parts(kPairs.size());
   for (const auto& [first, count] : {std::pair<int64_t, int64_t>{0, 1}, {1, 10}, {11, 53}, {64, 156}}) {
-    const std::vector<PairResult> part = run(hashed, episodes_of(first, count), 2);
+    const std::vector<Outcomes> part = run(hashed, episodes_of(first, count), 2);
     for (size_t p = 0; p < kPairs.size(); ++p) parts[p].add(part[p]);
   }
   for (size_t p = 0; p < kPairs.size(); ++p) {
-    EXPECT_TRUE(same(two[p], all[p]));
-    EXPECT_TRUE(same(other_order[p], all[p]));
-    EXPECT_TRUE(same(parts[p], all[p]));
+    EXPECT_EQ(two[p], all[p]);
+    EXPECT_EQ(other_order[p], all[p]);
+    EXPECT_EQ(parts[p], all[p]);
   }
-  EXPECT_FALSE(same(run(hashed, episodes, 1, {2, 1})[0], all[0]));
+  EXPECT_NE(run(hashed, episodes, 1, {2, 1})[0], all[0]);
 }
 
 TEST(Evaluate, ALearnerThatRunsIntoTheWallTimesOut) {
   const std::vector<EvalEpisode> episodes = episodes_of(0, 50);
-  const std::vector<PairResult> got = run(always<kUp>, episodes, 2);
+  const std::vector<Outcomes> got = run(always<kUp>, episodes, 2);
   std::vector<int64_t> reward(kPairs.size(), 0);
   for (const EvalEpisode& episode : episodes) {
     // So many steps up to the wall, then two cents a step.
@@ -186,13 +187,14 @@ TEST(Evaluate, ALearnerThatRunsIntoTheWallTimesOut) {
     }
     reward[episode.pair] += -way - 2 * (kStepLimit - way);
   }
-  for (size_t p = 0; p < kPairs.size(); ++p) EXPECT_TRUE(same(got[p], {50, 0, 0, 50, reward[p], 50 * kStepLimit})) << p;
+  for (size_t p = 0; p < kPairs.size(); ++p)
+    EXPECT_EQ(got[p], (Outcomes{50, 0, 0, 50, reward[p], 50 * kStepLimit})) << p;
 }
 
 TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
   const std::vector<EvalEpisode> episodes = episodes_of(0, 700);
-  const std::vector<PairResult> got = run(always<kPick>, episodes, 2);
-  std::vector<PairResult> want(kPairs.size());
+  const std::vector<Outcomes> got = run(always<kPick>, episodes, 2);
+  std::vector<Outcomes> want(kPairs.size());
   int64_t first_picks = 0;
   for (const EvalEpisode& episode : episodes) {
     const EnvTask pair = kPairs[episode.pair];
@@ -206,7 +208,7 @@ TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
       want[episode.pair].add({1, 0, 0, 1, first ? 100 - 300 : -300, kStepLimit});
   }
   for (size_t p = 0; p < kPairs.size(); ++p) {
-    EXPECT_TRUE(same(got[p], want[p])) << p;
+    EXPECT_EQ(got[p], want[p]) << p;
     EXPECT_GT(got[p].wrong, 5);
   }
   EXPECT_GT(first_picks, 2);
@@ -219,8 +221,8 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
     Parallel parallel(threads);
     FunctionPolicy policy(hashed);
     size_t done = 0;
-    PairResult sum, recorded;
-    for (const PairResult& result : evaluate(
+    Outcomes sum, recorded;
+    for (const Outcomes& result : evaluate(
              parallel, policy, builtin_world(), kPairs, episodes, {3, 1},
              [&](const Trajectory& t) {
                const EvalEpisode& episode = episodes[lines[threads - 1].size()];
@@ -241,13 +243,13 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
       sum.add(result);
     EXPECT_EQ(done, episodes.size());
     EXPECT_EQ(lines[threads - 1].size(), episodes.size());
-    EXPECT_TRUE(same(sum, recorded));
+    EXPECT_EQ(sum, recorded);
   }
   EXPECT_EQ(lines[0], lines[1]);
 }
 
 TEST(Evaluate, NoEpisodesIsNoWork) {
-  for (const PairResult& result : run(hashed, {}, 2)) EXPECT_TRUE(same(result, {}));
+  for (const Outcomes& result : run(hashed, {}, 2)) EXPECT_EQ(result, Outcomes{});
 }
 
 // A start of the pair with the agent on every free cell.

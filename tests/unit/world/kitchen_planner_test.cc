@@ -88,11 +88,11 @@ TEST(KitchenPlanner, ActsByItsValues) {
 }
 
 // The best return from every state that can be reached from `start`, by value iteration over the world itself.
-std::map<std::array<uint8_t, 14>, int> best_returns(const World& small, EnvTask pair, const WorldState& start) {
+std::map<decltype(WorldState::bytes), int> best_returns(const World& small, EnvTask pair, const WorldState& start) {
   struct Edge {
     int cents, to;  // -1 where the episode ends
   };
-  std::map<std::array<uint8_t, 14>, int> index = {{start.bytes, 0}};
+  std::map<decltype(WorldState::bytes), int> index = {{start.bytes, 0}};
   std::vector<WorldState> states = {start};
   std::vector<std::array<Edge, kKitchenActions>> edges;
   for (size_t i = 0; i < states.size(); ++i) {
