@@ -14,6 +14,7 @@ class Corridor : public World {
   const std::vector<std::string>& action_names() const override { return action_names_; }
   int moves() const override { return 2; }
 
+  size_t state_bytes() const override { return 1; }
   WorldState reset(int, Random& random) const override { return at(1 + int(random.below(kCells - 2))); }
   WorldStep step(EnvTask pair, WorldState& state, int action) const override {
     state = at(state.bytes[0] + (action == 1 ? 1 : -1), state.steps + 1);
