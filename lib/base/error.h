@@ -8,14 +8,26 @@ namespace synpo {
 
 enum class Exit { kOk = 0, kUsage = 64, kData = 65, kNoInput = 66, kInternal = 70, kCantCreate = 73, kIo = 74 };
 
+// Names what went wrong, for failures against which the user of a tool can do something that the library cannot name:
+// options are the tool's. A constant beside the function that fails with it; the tool's Advice (cli/options.h) adds the
+// words.
+struct Cause {
+  const char* name = "";
+};
+
 // A failure with a message fit for the user. The library throws it and never prints or exits.
 class Error : public std::runtime_error {
  public:
-  Error(Exit code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  Error(Exit code, const std::string& message, Cause cause = {})
+      : std::runtime_error(message), code_(code), cause_(cause) {}
   Exit code() const { return code_; }
+  bool has(Cause cause) const { return std::string(cause_.name) == cause.name; }
+  // The same, with the place in front of its message.
+  Error at(const std::string& place) const { return {code_, place + what(), cause_}; }
 
  private:
   Exit code_;
+  Cause cause_;
 };
 
 // The arguments, written one after the other.
@@ -29,6 +41,10 @@ std::string concat(const Args&... args) {
 template <class... Args>
 [[noreturn]] void fail(Exit code, const Args&... args) {
   throw Error(code, concat(args...));
+}
+template <class... Args>
+[[noreturn]] void fail(Exit code, Cause cause, const Args&... args) {
+  throw Error(code, concat(args...), cause);
 }
 
 // `text` between single quotes, cut at 60 bytes, with control characters and invalid UTF-8 written as \xNN.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <variant>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -17,7 +18,7 @@ using O = ImitationOptions;
 
 struct Hyper {
   const char* name;
-  double O::*value;
+  std::variant<double O::*, bool O::*> value;
   double low, high;
   bool whole;
   const char* help;
@@ -42,11 +43,11 @@ const Hyper kHypers[] = {
     {"balance-final", &O::balance_final, 0, 1, false, "what --balance moves to by the run's end; 0: it stays"},
     {"roll-in", &O::roll_in, 0, 1, false, "probability of the learner's own greedy move behind a taken step"},
     {"roll-noise", &O::roll_noise, 0, 1, false, "probability of a random move otherwise"},
-    {"fresh-starts", &O::fresh_starts, 0, 1, true,
-     "1: running episodes start anywhere, the stream gives the pairs alone"},
+    {"fresh-starts", &O::fresh_starts, 0, 1, true, "running episodes start anywhere; the stream gives the pairs alone"},
     {"roll-limit", &O::roll_limit, 1, kStepLimit, true, "steps after which a running episode is given up"},
     {"lr", &O::learning_rate, 0, 1, false, "learning rate of Adam", "The optimiser"},
-    {"cosine", &O::cosine, 0, 1, true, "1: the learning rate falls by half a cosine to the run's end; 0: constant"},
+    {"cosine", &O::cosine, 0, 1, true,
+     "the learning rate falls by half a cosine to the run's end; else it is constant"},
     {"lr-final", &O::final_rate, 0, 1, false, "learning rate at the cosine's end"},
     {"warm-up", &O::warm_up, 0, kMany, true, "updates over which the learning rate rises from 0"},
     {"beta1", &O::beta1, 0, 0.9999999, false, "decay of Adam's first moment"},
@@ -60,8 +61,8 @@ const Hyper kHypers[] = {
     {"task-loss", &O::task_loss, 0, 1e6, false, "weight of task disentanglement (lambda 3)"},
     {"embedding-sd", &O::embedding_sd, 0, 1e3, false, "embeddings start as N(0, SD^2); 0: Xavier uniform",
      "The network"},
-    {"normalise-input", &O::normalise_input, 0, 1, true, "1: batch normalisation of the pictures, 0: fixed scaling"},
-    {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "1: embeddings are scaled to one length"},
+    {"normalise-input", &O::normalise_input, 0, 1, true, "batch normalisation of the pictures; else fixed scaling"},
+    {"normalise-embeddings", &O::normalise_embeddings, 0, 1, true, "embeddings are scaled to one length"},
     {"feature", &O::feature, 1, 4096, true, "size d of the state feature; kitchens: 256"},
     {"basis", &O::basis, 1, 4096, true, "number K of basis policies"},
     {"embedding", &O::embedding, 1, 4096, true, "size of the embeddings"},
@@ -141,10 +142,21 @@ const Hyper& find(const std::string& name) {
   return *std::find_if(std::begin(kHypers), std::end(kHypers), [&](const Hyper& hyper) { return hyper.name == name; });
 }
 
+bool is_toggle(const Hyper& hyper) { return std::holds_alternative<bool O::*>(hyper.value); }
+double get(const Hyper& hyper, const O& options) {
+  return std::visit([&](auto member) { return double(options.*member); }, hyper.value);
+}
+void set(const Hyper& hyper, O& options, double value) {
+  if (is_toggle(hyper))
+    options.*std::get<bool O::*>(hyper.value) = value != 0;
+  else
+    options.*std::get<double O::*>(hyper.value) = value;
+}
+
 template <size_t N>
 void give(const MethodDefault (&defaults)[N], const std::string& method, O& options) {
   for (const MethodDefault& given : defaults)
-    if (method == given.method) options.*find(given.name).value = given.value;
+    if (method == given.method) set(find(given.name), options, given.value);
 }
 
 std::string show(const Hyper& hyper, double value) {
@@ -173,7 +185,7 @@ double O::done(int64_t update, int64_t total) const {
 
 RunningOptions O::running_options(int64_t update, int64_t total) const {
   const double now = balance_final == 0 ? balance : balance + (balance_final - balance) * done(update, total);
-  return {int(running), now, roll_in, roll_noise, fresh_starts != 0, int(roll_limit)};
+  return {int(running), now, roll_in, roll_noise, fresh_starts, int(roll_limit)};
 }
 
 PolicyShape O::shape(const World& world) const {
@@ -190,14 +202,14 @@ PolicyShape O::shape(const World& world) const {
   shape.head_hidden = int(head_hidden);
   shape.seam = int(seam);
   shape.sf_loss = SfLoss(int(sf_loss));
-  shape.normalise_input = normalise_input != 0;
-  shape.normalise_embeddings = normalise_embeddings != 0;
+  shape.normalise_input = normalise_input;
+  shape.normalise_embeddings = normalise_embeddings;
   return shape;
 }
 
 double O::rate(int64_t update, int64_t total) const {
   if (update < warm_up) return learning_rate * (update + 1) / warm_up;
-  if (cosine == 0) return learning_rate;
+  if (!cosine) return learning_rate;
   return final_rate + (learning_rate - final_rate) * 0.5 * (1 + std::cos(M_PI * done(update, total)));
 }
 
@@ -206,7 +218,7 @@ ImitationOptions recipe(const std::string& name, const std::string& method, Sigh
   if (sight == Sight::kFeatures) options.feature = kTemporalFeature;
   give(kMethodDefaults, method, options);
   if (name == "paper") {
-    options.normalise_input = 1;
+    options.normalise_input = true;
     return options;
   }
   if (name != "fast") fail(Exit::kUsage, "unknown recipe ", quoted(name), ", expected fast or paper");
@@ -216,10 +228,10 @@ ImitationOptions recipe(const std::string& name, const std::string& method, Sigh
   options.balance_final = 0.3;
   options.roll_in = 0.5;
   options.roll_noise = 0.1;
-  options.fresh_starts = 1;
+  options.fresh_starts = true;
   options.roll_limit = 120;
   options.learning_rate = 0.002;
-  options.cosine = 1;
+  options.cosine = true;
   options.warm_up = 200;
   options.task_loss = 1;
   options.embedding_sd = 1;
@@ -235,7 +247,8 @@ std::string default_of(const Hyper& hyper, const std::string& name) {
   std::string common, others;
   for (const std::string& method : method_names()) {
     if (!hyper.methods.empty() && !hyper.methods.count(method)) continue;
-    const std::string value = show(hyper, recipe(name, method).*hyper.value);
+    const double own = get(hyper, recipe(name, method));
+    const std::string value = is_toggle(hyper) ? (own != 0 ? "on" : "off") : show(hyper, own);
     if (common.empty())
       common = value;
     else if (value != common)
@@ -262,6 +275,10 @@ void RecipeOptions::add_to(Options& options) {
     const std::string a = default_of(hyper, "fast"), b = default_of(hyper, "paper");
     const std::string shown =
         std::string(hyper.help) + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
+    if (is_toggle(hyper)) {
+      options.toggle(hyper.name, shown.c_str(), [this, &hyper](bool on) { changes_[hyper.name] = on; });
+      continue;
+    }
     options.call(0, hyper.name, "X", shown.c_str(), [this, &hyper](const std::string& text) {
       double value = 0;
       if (!parse(text, hyper, value)) throw std::invalid_argument(expectation(hyper));
@@ -280,7 +297,7 @@ ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) c
     if (const auto change = changes_.find(hyper.name); change != changes_.end()) {
       if (!hyper.methods.empty() && !hyper.methods.count(method))
         fail(Exit::kUsage, "-m ", method, " has no --", hyper.name);
-      options.*hyper.value = change->second;
+      set(hyper, options, change->second);
     }
   if (no_reward_loss_) options.reward_loss = 0;
   if (no_env_loss_) options.env_loss = 0;
@@ -294,7 +311,7 @@ ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) c
 
 std::map<std::string, std::string> describe_options(const ImitationOptions& options) {
   std::map<std::string, std::string> values;
-  for (const Hyper& hyper : kHypers) values[hyper.name] = show(hyper, options.*hyper.value);
+  for (const Hyper& hyper : kHypers) values[hyper.name] = show(hyper, get(hyper, options));
   return values;
 }
 
@@ -304,8 +321,10 @@ ImitationOptions parse_options(const std::map<std::string, std::string>& values)
     const auto found = values.find(hyper.name);
     if (found == values.end() && hyper.late) continue;
     if (found == values.end()) fail(Exit::kData, "the checkpoint has no option '", hyper.name, "'");
-    if (!parse(found->second, hyper, options.*hyper.value))
+    double value = 0;
+    if (!parse(found->second, hyper, value))
       fail(Exit::kData, "option '", hyper.name, "': found ", quoted(found->second), ", ", expectation(hyper));
+    set(hyper, options, value);
   }
   return options;
 }

@@ -17,16 +17,19 @@ struct ImitationOptions {
   double memory = 20000;     // trajectories kept
   double read = 1;           // trajectories read before an update
   double fill = 1;           // trajectories read before the first update
-  double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, fresh_starts = 0, roll_limit = kStepLimit;
+  double running = 8192, balance = 1, roll_in = 0, roll_noise = 0, roll_limit = kStepLimit;
+  bool fresh_starts = false;
   double balance_final = 0;  // what balance moves to, in a straight line, by the run's end; 0: it stays
   // The optimiser.
-  double learning_rate = 0.001, cosine = 0, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8,
+  bool cosine = false;
+  double learning_rate = 0.001, final_rate = 0, warm_up = 0, beta1 = 0.9, beta2 = 0.999, epsilon = 1e-8,
          weight_decay = 0.001;
   double averaging = 0;  // decay of the averaged weights; 0: none
   // The losses.
   double reward_loss = 0.01, env_loss = 0.1, task_loss = 0.001;
   // The network.
-  double embedding_sd = 0, normalise_input = 0, normalise_embeddings = 0;
+  bool normalise_input = false, normalise_embeddings = false;
+  double embedding_sd = 0;
   double feature = 128, basis = 128, embedding = 128, hidden = 512, action_embedding = 0, head_hidden = 1024;
   // Of single methods.
   double seam = 32, dropout = 0.2, discount = 0.99, sf_loss = 0;

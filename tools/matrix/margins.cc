@@ -1,8 +1,6 @@
 // synpo-matrix rows and cols: tasks and environments, the worst first.
-#include <stdexcept>
-
-#include "matrix/matrix.h"
 #include "stats/report/margins.h"
+#include "matrix/matrix.h"
 
 namespace synpo {
 namespace {
@@ -12,12 +10,8 @@ int write(Axis axis, const char* command, const char* purpose, int argc, char** 
   int64_t most = 1000000;
   bool table = false;
   Options options(command, "[OPTION]... [MATRIX]...", purpose);
-  options
-      .call('n', "count", "COUNT", "the so many worst [all]",
-            [&](const std::string& text) {
-              most = parse_count(text);
-              if (most < 1) throw std::invalid_argument("expected a whole number, at least 1");
-            })
+  options.integer('n', "count", "COUNT", "the so many worst", most, 1, INT64_MAX)
+      .shown_as("all")
       .flag(0, "tsv", "a table for machines", table)
       .text('o', "output", "FILE", "where the means go", output_path);
   const std::vector<GroupMargins> groups = margins(read_matrices(options.parse(argc, argv, 0, kMostFiles)), axis);

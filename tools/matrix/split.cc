@@ -1,9 +1,9 @@
 // synpo-matrix split: draws which pairs of environments and tasks training sees.
 #include <algorithm>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "format/pairs.h"
 #include "matrix/matrix.h"
 #include "play/world_factory.h"
@@ -28,14 +28,7 @@ std::vector<std::string> any_names(const std::string& option, const std::string&
 int matrix_split(int argc, char** argv) {
   SplitPlan plan;
   std::string world = "gridworld", envs, tasks, parts, output_path = "-";
-  int64_t seed = 1, setting = 1;
-  double ratio = 0;
-  const auto count_into = [](int64_t& value) {
-    return [&value](const std::string& text) {
-      value = parse_count(text);
-      if (value < 0) throw std::invalid_argument("expected a whole number, at least 0");
-    };
-  };
+  int64_t seed = 1;
   const auto add_single = [&](const std::string& text) {
     const std::vector<std::string> names = split_names(text);
     if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
@@ -43,18 +36,15 @@ int matrix_split(int argc, char** argv) {
   };
   Options options("synpo-matrix split", "[OPTION]... >PAIRS",
                   "Draws which pairs of environments and tasks are seen in training.");
-  options
-      .call('n', "seen", "COUNT", "seen pairs [36 %: 144 of 400; with --setting 2 or 3 all of P]",
-            count_into(plan.seen))
+  options.integer('n', "seen", "COUNT", "seen pairs", plan.seen, 0, INT64_MAX)
+      .shown_as("36 %: 144 of 400; with --setting 2 or 3 all of P")
       .call(0, "ratio", "R", "seen pairs as a share of all (of P), instead of -n",
             [&](const std::string& text) {
-              char* end = nullptr;
-              ratio = std::strtod(text.c_str(), &end);
-              if (text.empty() || *end || !(ratio > 0 && ratio <= 1))
+              if (!parse_whole(text, plan.ratio) || !(plan.ratio > 0 && plan.ratio <= 1))
                 throw std::invalid_argument("expected a number over 0 and up to 1");
             })
-      .call(0, "cover", "COUNT", "at least so many seen per environment and task [4, or what -n allows]",
-            count_into(plan.cover))
+      .integer(0, "cover", "COUNT", "at least so many seen per environment and task", plan.cover, 0, INT64_MAX)
+      .shown_as("4, or what -n allows")
       .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
       .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
       .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own",
@@ -62,9 +52,11 @@ int matrix_split(int argc, char** argv) {
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")
-      .integer(0, "setting", "N", "2 or 3: add the column part with P, Q and rest", setting, 1, 3)
-      .call(0, "p-envs", "COUNT", "the first so many environments belong to P [half]", count_into(plan.p_envs))
-      .call(0, "p-tasks", "COUNT", "the first so many tasks belong to P [half]", count_into(plan.p_tasks))
+      .integer(0, "setting", "N", "2 or 3: add the column part with P, Q and rest", plan.setting, 1, 3)
+      .integer(0, "p-envs", "COUNT", "the first so many environments belong to P", plan.p_envs, 0, INT64_MAX)
+      .shown_as("half")
+      .integer(0, "p-tasks", "COUNT", "the first so many tasks belong to P", plan.p_tasks, 0, INT64_MAX)
+      .shown_as("half")
       .text(0, "part", "LIST", "write only these parts, as in P or P,Q", parts)
       .section("Output")
       .text('o', "output", "FILE", "where the pairs go", output_path);
@@ -81,14 +73,12 @@ int matrix_split(int argc, char** argv) {
     plan.tasks = choose_names("--tasks", tasks, opened->task_names());
   }
   plan.seed = uint64_t(seed);
-  plan.setting = int(setting);
-  plan.ratio = ratio;
 
   const std::vector<std::string> wanted = split_names(parts);
   for (const std::string& part : wanted)
-    if (!parts.empty() && (setting == 1 || (part != "P" && part != "Q" && part != "rest")))
+    if (!parts.empty() && (plan.setting == 1 || (part != "P" && part != "Q" && part != "rest")))
       fail(Exit::kUsage, "--part ", quoted(part),
-           setting == 1 ? ": there are no parts without --setting 2 or 3" : ": expected P, Q or rest");
+           plan.setting == 1 ? ": there are no parts without --setting 2 or 3" : ": expected P, Q or rest");
   std::vector<PairRow> rows;
   for (const SplitPair& pair : split_pairs(plan))
     if (parts.empty() || std::find(wanted.begin(), wanted.end(), pair.part) != wanted.end())

@@ -19,13 +19,7 @@ int matrix_table(int argc, char** argv) {
   Options options(
       "synpo-matrix table", "[OPTION]... [MATRIX]...",
       "A line per method: mean and sd over runs, interval and interquartile mean, for seen and unseen pairs.");
-  options
-      .call('f', "format", "FORMAT", "text, tsv, markdown or latex [text]",
-            [&](const std::string& name) {
-              if (name != "text" && name != "tsv" && name != "markdown" && name != "latex")
-                throw std::invalid_argument("expected text, tsv, markdown or latex");
-              format = name;
-            })
+  options.choice('f', "format", "FORMAT", "text, tsv, markdown or latex", format, {"text", "tsv", "markdown", "latex"})
       .call(0, "subset", "LIST", "which columns, of seen, unseen, new, all, P, Q, rest [seen,unseen]",
             [&](const std::string& list) {
               subsets = split_names(list);

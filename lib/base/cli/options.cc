@@ -1,7 +1,5 @@
 #include "base/cli/options.h"
 
-#include <getopt.h>
-
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -23,29 +21,41 @@ const char kVersion[] = "0.1.0";
 
 namespace {
 
-double parse_real(const std::string& text) {
-  double value = 0;
-  if (!parse_whole(text, value) || !std::isfinite(value)) throw std::invalid_argument("expected a number");
-  return value;
-}
-
 [[noreturn]] void print_and_exit(const std::string& text) {
   write_file("-", text, Output::Kind::kText);
   std::exit(0);
 }
 
+// What all tools say.
+const std::vector<Advice> kCommonAdvice = {{kTerminalInput, "{} (see --help)"},
+                                           {kTerminalOutput, "{}: use -o FILE, or -f to force it"}};
+
+// What was thrown, in the tool's own words.
+Error advised(const Error& error, const std::vector<Advice>& advice) {
+  for (const Advice& one : advice) {
+    if (!error.has(one.cause)) continue;
+    std::string words = one.words;
+    return {error.code(), words.replace(words.find("{}"), 2, error.what())};
+  }
+  return error;
+}
+
 }  // namespace
+
+double parse_number(const std::string& text) {
+  double value = 0;
+  if (!parse_whole(text, value) || !std::isfinite(value)) throw std::invalid_argument("expected a number");
+  return value;
+}
 
 double parse_seconds(const std::string& text) {
   const char unit = text.empty() ? 0 : text.back();
   const double scale = unit == 'h' ? 3600 : unit == 'm' ? 60 : unit == 's' ? 1 : 0;
   double value = 0;
-  try {
-    value = parse_real(scale > 0 ? text.substr(0, text.size() - 1) : text);
-  } catch (const std::invalid_argument&) {
-    value = -1;
-  }
-  if (!(value > 0 && value < 1e8)) throw std::invalid_argument("expected a time such as 90s, 30m or 2h");
+  if (!parse_whole(std::string_view(text).substr(0, text.size() - (scale > 0)), value))
+    throw std::invalid_argument("expected a time such as 90s, 30m or 2h");
+  if (!(value > 0 && value < 1e8))
+    throw std::invalid_argument("expected a time such as 90s, 30m or 2h, its number over 0 and under 1e8");
   return value * (scale > 0 ? scale : 1);
 }
 
@@ -53,7 +63,7 @@ int64_t parse_count(const std::string& text) {
   int64_t value = 0;
   if (parse_whole(text, value)) return value;
   try {
-    const double real = parse_real(text);
+    const double real = parse_number(text);
     if (std::abs(real) < 0x1p53 && real == std::floor(real)) return int64_t(real);
   } catch (const std::invalid_argument&) {
   }
@@ -63,117 +73,197 @@ int64_t parse_count(const std::string& text) {
 Options::Options(std::string tool, std::string synopsis, std::string purpose)
     : tool_(std::move(tool)), synopsis_(std::move(synopsis)), purpose_(std::move(purpose)) {}
 
-Options& Options::call(char letter, const char* name, const char* arg, const char* help,
-                       std::function<void(const std::string&)> set) {
-  entries_.push_back({letter, name, arg ? arg : "", help, "", std::move(set)});
+Options& Options::add(Kind kind, char letter, const std::string& name, const char* arg, const char* help,
+                      std::function<void(const std::string&)> set) {
+  entries_.push_back({kind, letter, name, arg, help, "", std::move(set)});
   return *this;
 }
 
+Options& Options::shown_as(const std::string& default_text) {
+  entries_.back().shown_default = default_text;
+  return *this;
+}
+
+Options& Options::call(char letter, const char* name, const char* arg, const char* help,
+                       std::function<void(const std::string&)> set) {
+  return add(Kind::kArgument, letter, name, arg, help, std::move(set));
+}
+
 Options& Options::flag(char letter, const char* name, const char* help, bool& value) {
-  return call(letter, name, nullptr, help, [&value](const std::string&) { value = true; });
+  return add(Kind::kFlag, letter, name, "", help, [&value](const std::string&) { value = true; });
+}
+
+Options& Options::toggle(const char* name, const char* help, std::function<void(bool)> set) {
+  return add(Kind::kToggle, 0, name, "", help, [set = std::move(set)](const std::string& text) {
+    if (text != "0" && text != "1") throw std::invalid_argument("expected 0 or 1");
+    set(text == "1");
+  });
+}
+
+Options& Options::toggle(const char* name, const char* help, bool& value) {
+  return toggle(name, help, [&value](bool on) { value = on; }).shown_as(value ? "on" : "off");
+}
+
+template <class Integer>
+Options& Options::add_integer(char letter, const char* name, const char* arg, const char* help, Integer& value,
+                              Integer low, Integer high) {
+  return call(letter, name, arg, help,
+              [&value, low, high](const std::string& text) {
+                const std::string expected = concat("expected a whole number from ", low, " to ", high);
+                int64_t given = 0;
+                try {
+                  given = parse_count(text);
+                } catch (const std::invalid_argument&) {
+                  throw std::invalid_argument(expected);
+                }
+                if (given < low || given > high) throw std::invalid_argument(expected);
+                value = Integer(given);
+              })
+      .shown_as(std::to_string(value));
 }
 
 Options& Options::integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low,
                           int64_t high) {
-  call(letter, name, arg, help, [&value, low, high](const std::string& text) {
-    value = parse_count(text);
-    if (value < low || value > high)
-      throw std::invalid_argument(concat("expected a whole number from ", low, " to ", high));
-  });
-  entries_.back().shown_default = std::to_string(value);
-  return *this;
+  return add_integer(letter, name, arg, help, value, low, high);
+}
+
+Options& Options::integer(char letter, const char* name, const char* arg, const char* help, int& value, int low,
+                          int high) {
+  return add_integer(letter, name, arg, help, value, low, high);
 }
 
 Options& Options::real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
                        double high) {
-  call(letter, name, arg, help, [&value, low, high](const std::string& text) {
-    value = parse_real(text);
-    if (value < low || value > high) throw std::invalid_argument(concat("expected a number from ", low, " to ", high));
-  });
-  entries_.back().shown_default = shortest(value);
-  return *this;
+  return call(letter, name, arg, help,
+              [&value, low, high](const std::string& text) {
+                if (!parse_whole(text, value) || !(value >= low && value <= high))
+                  throw std::invalid_argument(concat("expected a number from ", low, " to ", high));
+              })
+      .shown_as(shortest(value));
 }
 
 Options& Options::choice(char letter, const char* name, const char* arg, const char* help, std::string& value,
                          std::vector<std::string> words) {
-  call(letter, name, arg, help, [&value, words = std::move(words)](const std::string& given) {
-    if (std::find(words.begin(), words.end(), given) == words.end())
-      throw std::invalid_argument("expected " + alternatives(words));
-    value = given;
-  });
-  entries_.back().shown_default = value;
-  return *this;
+  return call(letter, name, arg, help,
+              [&value, words = std::move(words)](const std::string& given) {
+                if (std::find(words.begin(), words.end(), given) == words.end())
+                  throw std::invalid_argument("expected " + alternatives(words));
+                value = given;
+              })
+      .shown_as(value);
 }
 
 Options& Options::text(char letter, const char* name, const char* arg, const char* help, std::string& value) {
-  call(letter, name, arg, help, [&value](const std::string& given) { value = given; });
-  entries_.back().shown_default = value;
-  return *this;
+  return call(letter, name, arg, help, [&value](const std::string& given) { value = given; }).shown_as(value);
 }
 
-Options& Options::section(const char* title) {
-  entries_.push_back({0, title, "", "", "", nullptr, true});
-  return *this;
-}
+Options& Options::section(const char* title) { return add(Kind::kHeading, 0, title, "", "", nullptr); }
 
 std::string Options::usage() const {
   std::string out = "usage: " + tool_ + (synopsis_.empty() ? "" : " ") + synopsis_ + "\n" + purpose_ + "\n\n";
   constexpr size_t kColumn = 30;
-  const auto row = [&](char letter, const std::string& name, const std::string& help) {
-    std::string left = letter ? std::string("  -") + letter + ", --" + name : "      --" + name;
-    left += left.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ') : std::string(kColumn - left.size(), ' ');
-    out += left + help + "\n";
-  };
   for (const Entry& entry : entries_) {
-    if (entry.heading) {
+    if (entry.kind == Kind::kHeading) {
       out += "\n" + entry.name + ":\n";
       continue;
     }
-    row(entry.letter, entry.name + (entry.arg.empty() ? "" : " " + entry.arg),
-        entry.help + (entry.shown_default.empty() ? "" : " [" + entry.shown_default + "]"));
+    std::string left = (entry.letter ? std::string("  -") + entry.letter + ", --" : "      --") + entry.name;
+    if (entry.kind == Kind::kToggle) left += ", --no-" + entry.name;
+    if (entry.kind == Kind::kArgument) left += " " + entry.arg;
+    left += left.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ') : std::string(kColumn - left.size(), ' ');
+    out += left + entry.help + (entry.shown_default.empty() ? "" : " [" + entry.shown_default + "]") + "\n";
   }
-  row('h', "help", "this text");
-  row(0, "version", "the version");
   return out;
 }
 
 void Options::wrong(const std::string& message) const { fail(Exit::kUsage, message, "; try '", tool_, " --help'"); }
 
-std::vector<std::string> Options::parse(int argc, char** argv, int least, int most) {
-  constexpr int kFirstLong = 1000;
-  std::string letters = ":h";
-  std::vector<option> longs;
-  for (size_t i = 0; i < entries_.size(); ++i) {
-    const Entry& entry = entries_[i];
-    if (entry.heading) continue;
-    if (entry.letter) letters += std::string(1, entry.letter) + (entry.arg.empty() ? "" : ":");
-    longs.push_back(
-        {entry.name.c_str(), entry.arg.empty() ? no_argument : required_argument, nullptr, int(kFirstLong + i)});
-  }
-  longs.push_back({"help", no_argument, nullptr, 'h'});
-  longs.push_back({"version", no_argument, nullptr, 1});
-  longs.push_back({nullptr, 0, nullptr, 0});
-  optind = 0;
-  opterr = 0;
-  for (int found; (found = getopt_long(argc, argv, letters.c_str(), longs.data(), nullptr)) != -1;) {
-    if (found == 'h') print_and_exit(usage());
-    if (found == 1) print_and_exit(tool_.substr(0, tool_.find(' ')) + " " + kVersion + "\n");
-    if (found == ':') wrong(concat("option ", argv[optind - 1], " needs an argument"));
-    if (found == '?')
-      wrong(optopt && optopt < kFirstLong ? concat("unknown option -", char(optopt))
-                                          : concat("unknown or ambiguous option ", quoted(argv[optind - 1])));
-    auto entry = found >= kFirstLong ? entries_.begin() + (found - kFirstLong)
-                                     : std::find_if(entries_.begin(), entries_.end(),
-                                                    [&](const Entry& e) { return !e.heading && e.letter == found; });
-    entry->given = true;
-    const std::string given = optarg ? optarg : "";
-    try {
-      entry->set(given);
-    } catch (const std::invalid_argument& error) {
-      wrong(concat("option --", entry->name, ": found ", quoted(given), ", ", error.what()));
+Options::Found Options::find(const std::string& name) {
+  std::vector<std::string> candidates;
+  Found found{};
+  for (Entry& entry : entries_) {
+    if (entry.kind == Kind::kHeading) continue;
+    for (const bool off : {false, true}) {
+      if (off && entry.kind != Kind::kToggle) continue;
+      const std::string full = (off ? "no-" : "") + entry.name;
+      if (full == name) return {&entry, off};
+      if (!full.starts_with(name)) continue;
+      candidates.push_back("--" + full);
+      found = {&entry, off};
     }
   }
-  std::vector<std::string> operands(argv + optind, argv + argc);
+  if (candidates.empty()) wrong("unknown option " + quoted("--" + name));
+  if (candidates.size() > 1) wrong("ambiguous option " + quoted("--" + name) + ": " + alternatives(candidates));
+  return found;
+}
+
+void Options::set(Entry& entry, const std::string& argument) {
+  entry.given = true;
+  try {
+    entry.set(argument);
+    // A name may be any text, but none is not a name.
+    if (entry.kind == Kind::kArgument && argument.empty()) throw std::invalid_argument("expected " + entry.arg);
+  } catch (const std::invalid_argument& error) {
+    wrong(concat("option --", entry.name, ": found ", quoted(argument), ", ", error.what()));
+  }
+}
+
+void Options::take_long(const std::string& word, Words& words) {
+  const size_t equals = word.find('=');
+  const bool has_value = equals != std::string::npos;
+  const std::string value = has_value ? word.substr(equals + 1) : "";
+  const auto [entry, off] = find(word.substr(0, equals));
+  if (has_value && (off || entry->kind == Kind::kFlag))
+    wrong(concat("option --", off ? "no-" : "", entry->name, " takes no value, found ", quoted(value)));
+  if (has_value) return set(*entry, value);
+  if (entry->kind == Kind::kArgument) {
+    const char* next = words.take();
+    if (!next) wrong(concat("option --", entry->name, " needs an argument"));
+    return set(*entry, next);
+  }
+  // --NAME 1 is older than --no-NAME.
+  double number = 0;
+  const bool older = entry->kind == Kind::kToggle && !off && words.next < words.end && parse_whole(*words.next, number);
+  set(*entry, older ? words.take() : off ? "0" : "1");
+}
+
+void Options::take_letters(const std::string& word, Words& words) {
+  for (size_t i = 1; i < word.size(); ++i) {
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.letter == word[i]; });
+    if (entry == entries_.end()) wrong(concat("unknown option -", word[i]));
+    if (entry->kind != Kind::kArgument) {
+      if (i + 1 < word.size() && word[i + 1] == '=')
+        wrong(concat("option -", word[i], " takes no value, found ", quoted(word.substr(i + 2))));
+      set(*entry, "");
+      continue;
+    }
+    if (i + 1 < word.size()) return set(*entry, word.substr(i + 1));
+    const char* next = words.take();
+    if (!next) wrong(concat("option -", word[i], " needs an argument"));
+    return set(*entry, next);
+  }
+}
+
+std::vector<std::string> Options::parse(int argc, char** argv, int least, int most) {
+  add(Kind::kFlag, 'h', "help", "", "this text", [this](const std::string&) { print_and_exit(usage()); });
+  add(Kind::kFlag, 0, "version", "", "the version",
+      [this](const std::string&) { print_and_exit(tool_.substr(0, tool_.find(' ')) + " " + kVersion + "\n"); });
+  std::vector<std::string> operands;
+  Words words{argv + std::min(argc, 1), argv + argc};
+  while (const char* next = words.take()) {
+    const std::string word = next;
+    if (word == "--") {
+      operands.insert(operands.end(), words.next, words.end);
+      break;
+    }
+    if (word.starts_with("--"))
+      take_long(word.substr(2), words);
+    else if (word.size() > 1 && word[0] == '-')
+      take_letters(word, words);
+    else
+      operands.push_back(word);
+  }
   if (int(operands.size()) > most) wrong("unexpected operand " + quoted(operands[most]));
   if (int(operands.size()) < least) wrong("an operand is missing");
   return operands;
@@ -183,7 +273,8 @@ bool Options::given(const char* name) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == name && e.given; });
 }
 
-int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv)) {
+int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv),
+             const std::vector<Advice>& advice) {
   const auto report = [&](Exit code, const char* message) {
     std::fprintf(stderr, "%s: %s\n", tool, message);
     return int(code);
@@ -193,7 +284,7 @@ int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char
   try {
     return body(argc, argv);
   } catch (const Error& error) {
-    return report(error.code(), error.what());
+    return report(error.code(), advised(advised(error, advice), kCommonAdvice).what());
   } catch (const Stopped& stopped) {
     return 128 + stopped.signal;
   } catch (const std::bad_alloc&) {
@@ -209,8 +300,14 @@ int run_commands(const char* tool, const char* purpose, const std::vector<Comman
     list += concat("  ", command.name, std::string(12 - std::min<size_t>(11, std::strlen(command.name)), ' '),
                    command.purpose, "\n");
   if (argc >= 2 && argv[1][0] != '-') {
-    for (const Command& command : commands)
-      if (argv[1] == std::string(command.name)) return command.body(argc - 1, argv + 1);
+    for (const Command& command : commands) {
+      if (argv[1] != std::string(command.name)) continue;
+      try {
+        return command.body(argc - 1, argv + 1);
+      } catch (const Error& error) {
+        throw advised(error, command.advice);
+      }
+    }
     fail(Exit::kUsage, "unknown command ", quoted(argv[1]), "; try '", tool, " --help'");
   }
   Options options(tool, "COMMAND [OPTION]...", concat(purpose, "\n\ncommands (each has its own --help):\n", list));

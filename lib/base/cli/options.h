@@ -1,10 +1,15 @@
-// Command lines: a table of options over getopt_long, --help and --version for every tool, one place that turns errors
-// into a message and an exit code.
+// Command lines: a table of options, --help and --version for every tool, one place that turns errors into a message
+// and an exit code.
+//
+// Options are read as GNU's getopt_long reads them: -n 5, -n5, -qn5, --count 5, --count=5, any beginning of a name that
+// no other option shares; options and operands in any order, whatever POSIXLY_CORRECT says; operands alone behind --.
 #pragma once
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "base/error.h"
 
 namespace synpo {
 
@@ -15,11 +20,15 @@ class Options {
   // `synopsis` is what follows the tool's name; `purpose` one or two lines for --help.
   Options(std::string tool, std::string synopsis, std::string purpose);
 
-  // `letter` may be 0. `help` is one line; the default is read from `value` and shown. A value outside the range given,
-  // or that is no number, is a usage error (64).
+  // `letter` may be 0. `help` is one line; the default is read from `value` and shown. An argument outside the range
+  // given, or that is no number, or that is empty, is a usage error (64) that says what was found and what is expected.
   Options& flag(char letter, const char* name, const char* help, bool& value);
+  // --NAME and --no-NAME. The older spelling --NAME 1 and --NAME 0 is read as well.
+  Options& toggle(const char* name, const char* help, bool& value);
+  Options& toggle(const char* name, const char* help, std::function<void(bool)> set);
   Options& integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low,
                    int64_t high);
+  Options& integer(char letter, const char* name, const char* arg, const char* help, int& value, int low, int high);
   Options& real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
                 double high);
   Options& text(char letter, const char* name, const char* arg, const char* help, std::string& value);
@@ -29,6 +38,8 @@ class Options {
   // Calls `set` with the argument; std::invalid_argument thrown by it is a usage error that names the option.
   Options& call(char letter, const char* name, const char* arg, const char* help,
                 std::function<void(const std::string&)> set);
+  // What --help shows as the default of the option added last, in place of the value's own.
+  Options& shown_as(const std::string& default_text);
   // A heading in --help above the options that follow.
   Options& section(const char* title);
 
@@ -38,29 +49,61 @@ class Options {
   bool given(const char* name) const;
 
  private:
+  enum class Kind { kHeading, kFlag, kToggle, kArgument };
   struct Entry {
+    Kind kind;
     char letter;
     std::string name, arg, help, shown_default;
     std::function<void(const std::string&)> set;
-    bool heading = false, given = false;
+    bool given = false;
   };
+  // An option as it stands on the command line; `off`: as --no-NAME.
+  struct Found {
+    Entry* entry;
+    bool off;
+  };
+  // The words of the command line that are left.
+  struct Words {
+    char **next, **end;
+    const char* take() { return next < end ? *next++ : nullptr; }
+  };
+  Options& add(Kind kind, char letter, const std::string& name, const char* arg, const char* help,
+               std::function<void(const std::string&)> set);
+  template <class Integer>
+  Options& add_integer(char letter, const char* name, const char* arg, const char* help, Integer& value, Integer low,
+                       Integer high);
   std::string usage() const;
   [[noreturn]] void wrong(const std::string& message) const;
+  Found find(const std::string& name);
+  void take_long(const std::string& word, Words& words);
+  void take_letters(const std::string& word, Words& words);
+  void set(Entry& entry, const std::string& argument);
   std::string tool_, synopsis_, purpose_;
   std::vector<Entry> entries_;
 };
 
-// "30m", "90s", "2h", "45" (seconds) to seconds; "2e7" and "20000" to a count. Throw std::invalid_argument.
+// "30m", "90s", "2h", "45" (seconds) to seconds; "2e7" and "20000" to a count; a finite number. Throw
+// std::invalid_argument.
 double parse_seconds(const std::string& text);
 int64_t parse_count(const std::string& text);
+double parse_number(const std::string& text);
+
+// What a tool says about failures of this cause: `words`, with the library's message in place of {}. It may name the
+// tool's options.
+struct Advice {
+  Cause cause;
+  const char* words;
+};
 
 // Runs a tool's main: catches what it throws, prints one line "tool: message" on stderr, returns the exit code.
-int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv));
+int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv),
+             const std::vector<Advice>& advice = {});
 
 struct Command {
   const char* name;
   const char* purpose;
   int (*body)(int argc, char** argv);
+  std::vector<Advice> advice = {};
 };
 // A tool of several commands: picks the one that argv[1] names, handles --help and --version of the tool itself.
 int run_commands(const char* tool, const char* purpose, const std::vector<Command>& commands, int argc, char** argv);

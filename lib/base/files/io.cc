@@ -18,7 +18,7 @@ constexpr size_t kBuffer = 1 << 16;
 
 Input::Input(const std::string& path) : fd_(0), name_("standard input"), buffer_(kBuffer) {
   if (path == "-") {
-    if (isatty(0)) fail(Exit::kUsage, "standard input is a terminal: expected a stream or a file (see --help)");
+    if (isatty(0)) fail(Exit::kUsage, kTerminalInput, "standard input is a terminal: expected a stream or a file");
     return;
   }
   name_ = path;
@@ -91,12 +91,14 @@ std::string Input::rest(size_t limit) {
   return out;
 }
 
-void Input::bad_line(const std::string& message) const { fail(Exit::kData, name_, ": line ", lines_, ": ", message); }
+void Input::bad_line(const std::string& message) const { bad_line(Error(Exit::kData, message)); }
+
+void Input::bad_line(const Error& error) const { throw error.at(concat(name_, ": line ", lines_, ": ")); }
 
 Output::Output(const std::string& path, Kind kind, bool force) : path_(path), fd_(1) {
   if (is_stdout()) {
     if (kind == Kind::kBinary && !force && isatty(1))
-      fail(Exit::kUsage, "standard output is a terminal and the output is binary: use -o FILE, or -f to force it");
+      fail(Exit::kUsage, kTerminalOutput, "standard output is a terminal and the output is binary");
     return;
   }
   struct stat status;

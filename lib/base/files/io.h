@@ -5,12 +5,17 @@
 #include <string_view>
 #include <vector>
 
+#include "base/error.h"
+
 namespace synpo {
+
+constexpr Cause kTerminalInput{"input from a terminal"}, kTerminalOutput{"binary output to a terminal"};
 
 // Reads from a file or stdin through a buffer. Errors name the file and the line or the byte.
 class Input {
  public:
-  // Throws kNoInput when the file cannot be opened, kUsage when stdin is a terminal.
+  // Throws kNoInput when the file cannot be opened, kUsage (kTerminalInput) when stdin is a
+  // terminal.
   explicit Input(const std::string& path);
   ~Input();
   Input(const Input&) = delete;
@@ -30,6 +35,8 @@ class Input {
 
   // Throws kData with "name: line N: ..." in front of the arguments.
   [[noreturn]] void bad_line(const std::string& message) const;
+  // The same for an error that was caught.
+  [[noreturn]] void bad_line(const Error& error) const;
 
  private:
   bool fill();
@@ -45,7 +52,7 @@ class Input {
 class Output {
  public:
   enum class Kind { kText, kBinary };
-  // Binary output to a terminal is refused (kUsage) unless `force`.
+  // Binary output to a terminal is refused (kUsage, kTerminalOutput) unless `force`.
   explicit Output(const std::string& path, Kind kind = Kind::kText, bool force = false);
   ~Output();
   Output(const Output&) = delete;

@@ -6,7 +6,6 @@
 #include <set>
 #include <stdexcept>
 
-#include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
 #include "base/files/folder.h"
@@ -276,101 +275,6 @@ TEST(Output, NamesWhatCannotBeMade) {
   const std::string path = folder.file("none/out");
   EXPECT_EQ(thrown([&] { Output output(path); }), "73 cannot create '" + path + "': No such file or directory");
   EXPECT_EQ(thrown([&] { Output output(folder.path()); }), "73 cannot create '" + folder.path() + "': Is a directory");
-}
-
-struct Settings {
-  bool flag = false;
-  int64_t count = 7;
-  double part = 0.5;
-  std::string name = "none", colour = "red", called;
-  std::vector<std::string> operands;
-  bool count_given = false;
-};
-
-Settings parsed(std::vector<std::string> arguments, int least = 0, int most = 0) {
-  Settings s;
-  Options options("tool", "[OPTION]...", "A tool.");
-  options.flag('f', "flag", "a flag", s.flag)
-      .section("More")
-      .integer('n', "count", "N", "a count", s.count, 0, 1000000)
-      .real(0, "part", "P", "a part", s.part, 0, 1)
-      .text('o', "output", "FILE", "a name", s.name)
-      .choice(0, "colour", "NAME", "a colour", s.colour, {"red", "green", "blue"})
-      .call(0, "call", "X", "a function", [&](const std::string& text) {
-        if (text == "bad") throw std::invalid_argument("expected good");
-        s.called = text;
-      });
-  arguments.insert(arguments.begin(), "tool");
-  std::vector<char*> argv;
-  for (std::string& argument : arguments) argv.push_back(argument.data());
-  argv.push_back(nullptr);
-  s.operands = options.parse(int(argv.size()) - 1, argv.data(), least, most);
-  s.count_given = options.given("count");
-  return s;
-}
-
-std::string wrong_usage(const std::vector<std::string>& arguments, int least = 0, int most = 0) {
-  return thrown([&] { parsed(arguments, least, most); });
-}
-
-TEST(Options, SetValues) {
-  const Settings none = parsed({});
-  EXPECT_EQ(none.count, 7);
-  EXPECT_FALSE(none.count_given);
-  const Settings s =
-      parsed({"-f", "x", "-n", "2e4", "--part=0.25", "-oa b", "--call", "good", "--colour", "blue", "--", "-y"}, 1, 2);
-  EXPECT_TRUE(s.flag);
-  EXPECT_EQ(s.count, 20000);
-  EXPECT_TRUE(s.count_given);
-  EXPECT_EQ(s.part, 0.25);
-  EXPECT_EQ(s.name, "a b");
-  EXPECT_EQ(s.called, "good");
-  EXPECT_EQ(none.colour, "red");
-  EXPECT_EQ(s.colour, "blue");
-  EXPECT_EQ(s.operands, (std::vector<std::string>{"x", "-y"}));
-}
-
-TEST(Options, WrongUsageIs64) {
-  const std::string help = "; try 'tool --help'";
-  EXPECT_EQ(wrong_usage({"-x"}), "64 unknown option -x" + help);
-  EXPECT_EQ(wrong_usage({"--nothing"}), "64 unknown or ambiguous option '--nothing'" + help);
-  EXPECT_EQ(wrong_usage({"-n"}), "64 option -n needs an argument" + help);
-  EXPECT_EQ(wrong_usage({"--count"}), "64 option --count needs an argument" + help);
-  EXPECT_EQ(wrong_usage({"-n", "1000001"}),
-            "64 option --count: found '1000001', expected a whole number from 0 to 1000000" + help);
-  EXPECT_EQ(wrong_usage({"-n", "ten"}), "64 option --count: found 'ten', expected a whole number" + help);
-  EXPECT_EQ(wrong_usage({"--part", "nan"}), "64 option --part: found 'nan', expected a number" + help);
-  EXPECT_EQ(wrong_usage({"--part", "1.5"}), "64 option --part: found '1.5', expected a number from 0 to 1" + help);
-  EXPECT_EQ(wrong_usage({"--call", "bad"}), "64 option --call: found 'bad', expected good" + help);
-  EXPECT_EQ(wrong_usage({"--colour", "grey"}), "64 option --colour: found 'grey', expected red, green or blue" + help);
-  EXPECT_EQ(wrong_usage({"x"}), "64 unexpected operand 'x'" + help);
-  EXPECT_EQ(wrong_usage({}, 1, 1), "64 an operand is missing" + help);
-}
-
-TEST(Options, CountsAndTimes) {
-  EXPECT_EQ(parse_count("20000"), 20000);
-  EXPECT_EQ(parse_count("2e7"), 20000000);
-  EXPECT_EQ(parse_count("9223372036854775807"), INT64_MAX);
-  for (const char* bad : {"", "1.5", "1e30", "9223372036854775808", "0x10", "5 ", "nan", "ten"})
-    EXPECT_THROW(parse_count(bad), std::invalid_argument) << bad;
-  EXPECT_EQ(parse_seconds("90s"), 90);
-  EXPECT_EQ(parse_seconds("30m"), 1800);
-  EXPECT_EQ(parse_seconds("1.5h"), 5400);
-  EXPECT_EQ(parse_seconds("45"), 45);
-  for (const char* bad : {"", "m", "0", "-1s", "nan", "inf", "1d", "1e9", "3 m"})
-    EXPECT_THROW(parse_seconds(bad), std::invalid_argument) << bad;
-}
-
-TEST(RunTool, TurnsWhatIsThrownIntoALineAndACode) {
-  const auto run = [](int (*body)(int, char**)) {
-    testing::internal::CaptureStderr();
-    const int code = run_tool("tool", 0, nullptr, body);
-    return std::to_string(code) + " " + testing::internal::GetCapturedStderr();
-  };
-  EXPECT_EQ(run([](int, char**) { return 3; }), "3 ");
-  EXPECT_EQ(run([](int, char**) -> int { fail(Exit::kData, "line ", 3, ": no"); }), "65 tool: line 3: no\n");
-  EXPECT_EQ(run([](int, char**) -> int { throw std::bad_alloc(); }), "70 tool: out of memory\n");
-  EXPECT_EQ(run([](int, char**) -> int { throw std::logic_error("never"); }), "70 tool: never\n");
 }
 
 TEST(Parallel, RunsEveryShardOnce) {
