@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
@@ -134,4 +135,6 @@ int body(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return run_tool("synpo-eval", argc, argv, body); }
+int main(int argc, char** argv) {
+  return run_tool("synpo-eval", argc, argv, body, {kNameFolder, kNameOtherFolder, kLeaveWorld});
+}

@@ -1,6 +1,7 @@
 // synpo-finetune: a trained policy goes on learning, for new environments and tasks or by reward.
 #include "finetune/finetune.h"
 
+#include "advice.h"
 #include "base/cli/options.h"
 
 using namespace synpo;
@@ -9,8 +10,18 @@ namespace {
 
 int body(int argc, char** argv) {
   return run_commands("synpo-finetune", "Takes a trained policy further.",
-                      {{"adapt", "embeddings of new environments and tasks from a few demonstrations", adapt},
-                       {"ppo", "reinforcement learning on the seen pairs", ppo}},
+                      {{"adapt",
+                        "embeddings of new environments and tasks from a few demonstrations",
+                        adapt,
+                        {kSeeWorld,
+                         kNameFolder,
+                         kNameOtherFolder,
+                         kSmallerRate,
+                         {kNeedsMore, "{} (sf: synpo-train --sf-loss ce makes policies that can be adapted)"}}},
+                       {"ppo",
+                        "reinforcement learning on the seen pairs",
+                        ppo,
+                        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate}}},
                       argc, argv);
 }
 

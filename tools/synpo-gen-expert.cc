@@ -1,4 +1,5 @@
 // Expert trajectories, and expert labels for anyone's trajectories, as JSON Lines on stdout.
+#include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
@@ -19,7 +20,7 @@ void relabel(const World& world, Output& output) {
     try {
       output.write(format_trajectory(relabelled(world, parse_trajectory(line, kStepLimit))) + "\n");
     } catch (const Error& error) {
-      input.bad_line(error.what());
+      input.bad_line(error);
     }
   }
 }
@@ -88,4 +89,4 @@ int gen_expert(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return run_tool("synpo-gen-expert", argc, argv, gen_expert); }
+int main(int argc, char** argv) { return run_tool("synpo-gen-expert", argc, argv, gen_expert, {kSeeWorld}); }

@@ -4,6 +4,9 @@
 
 #include <cstdio>
 
+#include "stats/matrix/heat_table.h"
+#include "stats/matrix/split.h"
+#include "stats/report/compare.h"
 #include "stats/report/summary.h"
 
 namespace synpo {
@@ -44,17 +47,22 @@ int matrix_merge(int argc, char** argv) {
 
 namespace {
 
+constexpr Advice kOneMethod = {kSeveralMethods, "{}: choose one with --method"};
+
 int run(int argc, char** argv) {
   return run_commands("synpo-matrix", "Splits pairs of environments and tasks, and works on success matrices.",
-                      {{"split", "draw the pairs that training sees", matrix_split},
+                      {{"split", "draw the pairs that training sees", matrix_split, {{kSinglePair, "--single {}"}}},
                        {"summary", "rates over seen and unseen pairs", matrix_summary},
                        {"table", "methods x seen/unseen, as text, TSV, Markdown or LaTeX", matrix_table},
-                       {"compare", "two methods pair by pair", matrix_compare},
+                       {"compare",
+                        "two methods pair by pair",
+                        matrix_compare,
+                        {{kOtherStarts, "{}; --any-start compares other start states, too"}}},
                        {"rows", "the tasks, worst first", matrix_rows},
                        {"cols", "the environments, worst first", matrix_cols},
-                       {"show", "the matrix in the terminal", matrix_show},
+                       {"show", "the matrix in the terminal", matrix_show, {kOneMethod}},
                        {"filter", "some of the rows", matrix_filter},
-                       {"wide", "tasks down and environments across, for other programs", matrix_wide},
+                       {"wide", "tasks down and environments across, for other programs", matrix_wide, {kOneMethod}},
                        {"merge", "several matrices into one", matrix_merge}},
                       argc, argv);
 }

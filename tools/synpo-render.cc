@@ -3,10 +3,12 @@
 
 #include <numeric>
 
+#include "advice.h"
 #include "base/error.h"
 #include "draw/episode/agent_view.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
+#include "stats/matrix/heat_table.h"
 #include "world/grid/maze.h"
 
 using namespace synpo;
@@ -74,11 +76,11 @@ int body(int argc, char** argv) {
   return run_commands("synpo-render",
                       "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and "
                       "policies as PNG; runs networks over views.",
-                      {{"heatmap", "success matrices", heatmap},
+                      {{"heatmap", "success matrices", heatmap, {{kSeveralMethods, "{}: choose one with --method"}}},
                        {"curves", "run logs as curves", curves},
                        {"map", "mazes and kitchens", map},
                        {"view", "what the agent sees", view},
-                       {"episode", "a trajectory as a path through its maze or kitchen", episode},
+                       {"episode", "a trajectory as a path through its maze or kitchen", episode, {kSeeWorld}},
                        {"embedding", "a checkpoint's environments and tasks", embedding},
                        {"policy", "what a checkpoint does in every cell, against the planner", policy},
                        {"features", "scene files of kitchens, their views seen by a feature network", features}},

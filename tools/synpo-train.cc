@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/clock.h"
@@ -52,7 +53,7 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
   const int64_t first = run.updates();
   // Timed are updates that do not depend on the total: those of the warm-up, all where nothing moves, else the first.
   const ImitationOptions& options = run.options();
-  const bool moves = options.cosine != 0 || options.balance_final != 0;
+  const bool moves = options.cosine || options.balance_final != 0;
   const int64_t measured = options.warm_up > 0 ? std::min<int64_t>(50, int64_t(options.warm_up)) : moves ? 1 : 50;
   std::string note;
   // With a limit in time the total is not known before some updates have been timed.
@@ -180,4 +181,12 @@ int body(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) { return run_tool("synpo-train", argc, argv, body); }
+int main(int argc, char** argv) {
+  return run_tool("synpo-train", argc, argv, body,
+                  {kSeeWorld,
+                   kNameFolder,
+                   kNameOtherFolder,
+                   kLeaveWorld,
+                   kSmallerRate,
+                   {kNoTrainingState, "{}: --init takes its weights"}});
+}

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/take_rows.h"
+#include "learn/finite.h"
 #include "nn/init.h"
 #include "play/running_episode.h"
 #include "policy/method/registry.h"
@@ -26,9 +27,7 @@ const TensorInfo& table(const Policy<float>& policy, PairSide side) {
 
 Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed) {
   if (const BatchNeeds needs = model.policy->needs(); needs.next || needs.planner_q)
-    fail(Exit::kUsage,
-         "the loss that the policy was trained with needs more than demonstrations hold (sf: --sf-loss ce can be "
-         "adapted)");
+    fail(Exit::kUsage, kNeedsMore, "the loss that the policy was trained with needs more than demonstrations hold");
   Model wide;
   wide.method = model.method;
   wide.shape = model.shape;
@@ -206,8 +205,7 @@ Losses Adaptation::update() {
   } else {
     losses = through_head(drawn);
   }
-  if (!std::isfinite(losses.total))
-    fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
+  check_finite(losses.total, updates_ + 1);
   ++updates_;
   for (const Span& span : learned_)
     adam_step(parallel_, options_.adam, updates_, span.size, gradient_.data() + span.offset,

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "nn/adam.h"
 #include "play/model.h"
@@ -35,7 +36,8 @@ struct AdaptOptions {
 // The same model for a world of more environments: parameters are carried over by environment and task; embeddings of
 // what no seen pair has are drawn anew from `seed`. Throws kData where an environment of the checkpoint is another one
 // in `world`, kUsage for a method without embeddings of environments and tasks, and for a loss that needs more than
-// demonstrations hold.
+// demonstrations hold (kNeedsMore).
+constexpr Cause kNeedsMore{"a loss that needs more than demonstrations hold"};
 Model widen(const Model& model, const World& from, const World& world, double embedding_sd, uint64_t seed);
 
 class Adaptation {

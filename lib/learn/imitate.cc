@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "learn/finite.h"
 #include "nn/adam.h"
 #include "nn/loss.h"
 #include "play/evaluate.h"
@@ -24,7 +25,7 @@ Model start_model(const World& world, const std::string& method, const Imitation
 // have been seen.
 Model resumable(const World& world, const Checkpoint& checkpoint) {
   if (!checkpoint.file.has("train/position"))
-    fail(Exit::kData, "the checkpoint has no training state (was it stripped?): --init takes its weights");
+    fail(Exit::kData, kNoTrainingState, "the checkpoint has no training state (was it stripped?)");
   Model saved = load_model(checkpoint, world);
   if (describe_shape(saved.shape) != describe_shape(parse_options(checkpoint.options).shape(world)))
     fail(Exit::kData, "the checkpoint's shape and options disagree");
@@ -131,8 +132,7 @@ bool Imitation::update(TrajectoryStream& stream) {
                                   .planner_q = batch_.planner_q.data()};
   const Losses losses = model_.policy->step(parallel_, steps, options_.step(), model_.parameters.data(),
                                             model_.statistics.data(), gradient_.data(), logits_.data());
-  if (!std::isfinite(losses.total))
-    fail(Exit::kInternal, "the loss is not finite at update ", model_.updates + 1, ": try a smaller --lr");
+  check_finite(losses.total, model_.updates + 1);
   AdamOptions adam = options_.adam();
   adam.learning_rate = options_.rate(model_.updates, total_updates_);
   const bool averaged = options_.averaging > 0;

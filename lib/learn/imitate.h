@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "base/error.h"
 #include "base/parallel.h"
 #include "format/run_log.h"
 #include "learn/recipe.h"
@@ -11,13 +12,16 @@
 
 namespace synpo {
 
+constexpr Cause kNoTrainingState{"no training state"};
+
 // Everything that a run needs to go on as if it had never stopped.
 class Imitation {
  public:
   // A fresh run of `method`. No seen pairs: those that the stream brings.
   Imitation(const World& world, Parallel& parallel, const std::string& method, const ImitationOptions& options,
             std::vector<EnvTask> seen, uint64_t seed);
-  // A run that goes on from a checkpoint with its train/ part. Throws kData where that is missing or malformed.
+  // A run that goes on from a checkpoint with its train/ part. Throws kData where that is malformed or
+  // missing (kNoTrainingState).
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint);
   // Takes the weights of another model, whose shape must be this one's (kData).
   void take_weights(const Model& other);

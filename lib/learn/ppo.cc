@@ -8,6 +8,7 @@
 #include "base/error.h"
 #include "base/take_rows.h"
 #include "base/text.h"
+#include "learn/finite.h"
 #include "nn/softmax.h"
 
 namespace synpo {
@@ -289,8 +290,7 @@ void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
                                   .frozen_statistics = true};
   const Losses losses = model_.policy->step(parallel_, batch, {options_.losses}, model_.parameters.data(),
                                             model_.statistics.data(), gradient_.data(), logits.data());
-  if (!std::isfinite(losses.total))
-    fail(Exit::kInternal, "the loss is not finite at update ", updates_ + 1, ": try a smaller --lr");
+  check_finite(losses.total, updates_ + 1);
   const size_t count = model_.policy->parameters().total(), value_count = value_layout_.total();
   const double length = std::sqrt(sum_of_squares(parallel_, count, gradient_.data()) +
                                   sum_of_squares(parallel_, value_count, value_gradient_.data()));

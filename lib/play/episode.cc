@@ -65,10 +65,10 @@ Episode replay(const World& world, const Trajectory& t) {
   if (t.world != world.name()) fail(Exit::kData, "world ", quoted(t.world), ", expected ", quoted(world.name()));
   if (t.rules != world.rules()) fail(Exit::kData, "rules version ", t.rules, ", this build has ", world.rules());
   const EnvTask pair = {world.env_index(t.env), world.task_index(t.task)};
-  if (pair.env < 0) fail(Exit::kData, "unknown env ", quoted(t.env), " (other maps? see -w)");
+  if (pair.env < 0) fail(Exit::kData, kOtherWorld, "unknown env ", quoted(t.env));
   if (pair.task < 0) fail(Exit::kData, "unknown task ", quoted(t.task));
   if (t.env_hash != world.environments()[pair.env].hash)
-    fail(Exit::kData, "env ", quoted(t.env), " is not the one of that name here (other maps? see -w)");
+    fail(Exit::kData, kOtherWorld, "env ", quoted(t.env), " is not the one of that name here");
   for (const auto& [name, list] : {std::pair{"actions", &t.actions}, {"labels", &t.labels}})
     for (const uint8_t action : *list)
       if (action >= world.actions())

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "base/error.h"
 #include "format/pairs.h"
 #include "format/trajectory.h"
 #include "world/world.h"
@@ -24,8 +25,9 @@ Trajectory expert_episode(const World& world, EnvTask pair, uint64_t seed, int64
 // The start of that episode: the same for expert and evaluation, from (seed, purpose, pair, episode) alone.
 WorldState episode_start(const World& world, EnvTask pair, uint64_t seed, Purpose purpose, int64_t episode);
 
-// Plays the trajectory again. Throws kData when env, task, rules or environment are not this world's, or rewards and
-// end don't come out again.
+// Plays the trajectory again. Throws kData when env, task, rules or environment are not this world's (kOtherWorld for
+// an environment), or rewards and end don't come out again.
+constexpr Cause kOtherWorld{"an environment of another world"};
 Episode replay(const World& world, const Trajectory& trajectory);
 
 // The same trajectory with the expert's labels.

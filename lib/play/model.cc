@@ -39,8 +39,7 @@ bool lies_in_files(const Checkpoint& checkpoint) {
 
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source) {
   if (source.empty()) return world_of(checkpoint);
-  if (!lies_in_files(checkpoint))
-    fail(Exit::kUsage, "the checkpoint holds its environments: -w is for those that lie in files of their own");
+  if (!lies_in_files(checkpoint)) fail(Exit::kUsage, kNeedsNoSource, "the checkpoint holds its environments");
   const std::unique_ptr<World> opened = open_world(source);
   return world_of(checkpoint, opened.get());
 }

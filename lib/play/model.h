@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "format/checkpoint.h"
 #include "nn/buffer.h"
 #include "play/episode.h"
@@ -34,8 +35,9 @@ bool lies_in_files(const Checkpoint& checkpoint);
 // The world in the checkpoint; environments that it does not hold itself are taken from `source`. Throws kData where
 // they are not there, are other ones, or don't fit this build, kUsage where there is no source.
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source = nullptr);
-// The same with the argument of -w, which may be empty. Throws kUsage where a checkpoint that holds its environments is
-// given one.
+// The same with the name of a world to open as the source, which may be empty. Throws kUsage (kNeedsNoSource) where a
+// checkpoint that holds its environments is given one.
+constexpr Cause kNeedsNoSource{"a source for environments that the checkpoint holds"};
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source);
 // Throws kData when tensors or world don't fit, or features come from another extractor.
 Model load_model(const Checkpoint& checkpoint, const World& world);

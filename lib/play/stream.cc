@@ -27,7 +27,7 @@ std::optional<Episode> TrajectoryStream::next() {
     hash_.add(line_).add("\n");
     return episode;
   } catch (const Error& error) {
-    input_.bad_line(error.what());
+    input_.bad_line(error);
   }
 }
 

@@ -23,10 +23,10 @@ auto parse_all(const std::vector<Environment>& environments, Parse parse) {
 }
 
 std::unique_ptr<World> choose_scenes(const std::vector<Environment>& environments, const World* source) {
-  if (!source) fail(Exit::kUsage, "the kitchens lie in files of their own: name their folder with -w kitchen:DIR");
+  if (!source) fail(Exit::kUsage, kNoSource, "the kitchens lie in files of their own");
   const SceneKitchens* scenes = dynamic_cast<const SceneKitchens*>(source);
   if (!scenes)
-    fail(Exit::kUsage, "the kitchens lie in files of their own: expected -w kitchen:DIR, found the built-in ",
+    fail(Exit::kUsage, kOtherSource, "the kitchens lie in files of their own: found the built-in ",
          quoted(source->name()));
   std::vector<int> chosen;
   for (const Environment& env : environments) {

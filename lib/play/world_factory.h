@@ -4,17 +4,22 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "world/world.h"
 
 namespace synpo {
 
 constexpr char kWorldNames[] = "gridworld, gridworld:DIR, kitchen or kitchen:DIR";
 
+// Environments that lie in files of their own are asked for without a source, or with one that has no files.
+constexpr Cause kNoSource{"no source of environments"}, kOtherSource{"a source without files"};
+
 // The world of one of these names on the command line. Throws kUsage for another, kData and kNoInput
 // for what is wrong with its files.
 std::unique_ptr<World> open_world(const std::string& name);
 // A world by its name() from environments() as a file has kept them; those without content are taken from `source` by
-// their names. Throws kData where content is malformed, or where hashes differ, and kUsage where there is no source.
+// their names. Throws kData where content is malformed, or where hashes differ, and kUsage (kNoSource,
+// kOtherSource) where there is no source for them.
 std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments,
                                      const World* source = nullptr);
 

@@ -47,7 +47,7 @@ std::vector<HeatPanel> read_panels(const std::vector<LabelledFiles>& files, cons
       try {
         panels.push_back({title, pool_matrix(part.matrix, choice.method, choice.colours == "part")});
       } catch (const Error& error) {
-        fail(error.code(), title.empty() ? "" : quoted(title) + ": ", error.what());
+        throw error.at(title.empty() ? "" : quoted(title) + ": ");
       }
     }
   }

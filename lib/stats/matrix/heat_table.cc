@@ -76,8 +76,7 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
     if (!row.part.empty()) part_names.insert(row.part);
   }
   if (rows.empty()) fail(Exit::kData, "no row", method.empty() ? "" : " of the method " + quoted(method));
-  if (methods.size() > 1)
-    fail(Exit::kData, "rows of several methods (", joined(methods), "): choose one with --method");
+  if (methods.size() > 1) fail(Exit::kData, kSeveralMethods, "rows of several methods (", joined(methods), ")");
   if (worlds.size() > 1) {
     std::set<std::string> names;
     for (const auto& [world, window] : worlds) names.insert(concat(world, " with window ", window));

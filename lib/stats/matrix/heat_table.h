@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "format/matrix.h"
 #include "stats/cluster.h"
 
@@ -48,9 +49,10 @@ struct HeatTable {
 };
 
 // Sums the rows of each pair over runs and shards. Names come as they appear first. `method` empty: all rows. Throws
-// kData when the rows left are of several methods, worlds or temperatures, when other environments go by one name, when
-// a pair is seen in one row and unseen or new in another (or in two parts), when no row is left, for `by_part` without
-// parts, and for more names or cells than the above.
+// kData when the rows left are of several methods (kSeveralMethods), worlds or temperatures, when other environments go
+// by one name, when a pair is seen in one row and unseen or new in another (or in two parts), when no row is left, for
+// `by_part` without parts, and for more names or cells than the above.
+constexpr Cause kSeveralMethods{"several methods"};
 HeatTable pool_matrix(const Matrix& matrix, const std::string& method = "", bool by_part = false);
 
 // How tasks or environments are ordered.

@@ -128,9 +128,10 @@ std::vector<Cell> seen_order(const std::vector<int>& envs, const std::vector<int
   return order;
 }
 
-int position(const std::vector<std::string>& names, const std::string& name, const char* what) {
+int position(const std::vector<std::string>& names, const std::string& name, const std::string& pair,
+             const char* what) {
   const auto it = std::find(names.begin(), names.end(), name);
-  if (it == names.end()) fail(Exit::kUsage, "--single: ", quoted(name), " is no ", what, " of this split");
+  if (it == names.end()) fail(Exit::kUsage, kSinglePair, pair, ": ", quoted(name), " is no ", what, " of this split");
   return int(it - names.begin());
 }
 
@@ -139,10 +140,11 @@ std::vector<char> draw_seen(const SplitPlan& plan, int envs, int tasks, int64_t 
   std::vector<char> seen(size_t(envs) * tasks, 0);
   std::set<int> single_envs, single_tasks;
   for (const auto& [env_name, task_name] : plan.singles) {
-    const int env = position(plan.envs, env_name, "environment"), task = position(plan.tasks, task_name, "task");
+    const std::string pair = env_name + "," + task_name;
+    const int env = position(plan.envs, env_name, pair, "environment"),
+              task = position(plan.tasks, task_name, pair, "task");
     if (!single_envs.insert(env).second || !single_tasks.insert(task).second)
-      fail(Exit::kUsage, "--single ", env_name, ",", task_name,
-           ": its environment or its task has another single pair already");
+      fail(Exit::kUsage, kSinglePair, pair, ": its environment or its task has another single pair already");
     seen[size_t(env) * tasks + task] = 1;
   }
   std::vector<int> free_envs, free_tasks;

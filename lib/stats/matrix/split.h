@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+
 namespace synpo {
 
 constexpr double kSeenRatio = 0.36;  // 144 of 400
@@ -38,7 +40,8 @@ struct SplitPair {
 
 // All pairs, environment by environment. The same plan gives the same split. The seen pairs are the first of one order
 // that depends on names' number, seed, cover and singles only, so a smaller count gives a subset of a larger one.
-// Throws kUsage when the plan cannot be met.
+// Throws kUsage when the plan cannot be met; kSinglePair with the name of a single pair that is in its way.
+constexpr Cause kSinglePair{"a single pair"};
 std::vector<SplitPair> split_pairs(const SplitPlan& plan);
 
 // The parts between commas; "" is one empty name.

@@ -272,9 +272,8 @@ Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start)
     if (result.other_env.pairs > 0)
       fail(Exit::kData, a.name, " and ", b.name, ": other environments go by the same names (env_hash), and ",
            "no pair is left");
-    fail(Exit::kData, a.name, " and ", b.name,
-         " have no pair with the same start states (eval_seed, first_episode, episodes) and the same seen",
-         any_start ? "" : "; --any-start compares other start states, too");
+    fail(Exit::kData, any_start ? Cause{} : kOtherStarts, a.name, " and ", b.name,
+         " have no pair with the same start states (eval_seed, first_episode, episodes) and the same seen");
   }
 
   const Group group_a = only_group({a.name, part_a}), group_b = only_group({b.name, part_b});

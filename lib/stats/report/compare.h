@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/files/io.h"
 #include "stats/interval.h"
 #include "stats/matrix/merge.h"
@@ -52,13 +53,15 @@ struct Comparison {
 // the same environments in the same order. Parts may stand in one of the two alone; different ones are kData. A pair is
 // compared on those of its rows whose range both sides have, or on all of them with `any_start`; what is seen, unseen
 // or new on one side is compared with the same on the other, and an environment with another hash not at all. Both must
-// be merged, of one method and temperature each and of one world together; kData otherwise, or when no pair is left.
+// be merged, of one method and temperature each and of one world together; kData otherwise, or when no pair is left
+// (kOtherStarts where `any_start` might leave some).
 //
 // The interval of a subset: mean_b - mean_a +- sqrt(r + p). r is that of the runs: t^2 times the variance of the mean
 // of matched runs' differences; else of the difference of two means, as Welch (1947) has it, a side with one run being
 // taken to vary as the other does; 0 with one run each. p is that of the pairs: t^2 times their variance with the pairs
 // of one environment, and of one task, varying together (Cameron, Gelbach and Miller 2011). It holds Newcombe's of all
 // episodes. Neither the order of the rows nor that of the runs counts.
+constexpr Cause kOtherStarts{"other start states"};
 Comparison compare(const MatrixSource& a, const MatrixSource& b, bool any_start);
 
 // With the `most` pairs that changed most.

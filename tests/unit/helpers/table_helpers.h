@@ -53,4 +53,14 @@ inline std::string thrown(const std::function<void()>& work) {
   return "nothing thrown";
 }
 
+// Whether it fails, and for this cause.
+inline bool fails_for(Cause cause, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    return error.has(cause);
+  }
+  return false;
+}
+
 }  // namespace synpo

@@ -122,10 +122,14 @@ TEST(Replay, RefusesWhatIsNotThisWorlds) {
   EXPECT_EQ(refused([](Trajectory& t) { t.actions[0] = 5; }),
             "65 field 'actions': found '5', expected a whole number from 0 to 4");
   EXPECT_EQ(refused([](Trajectory& t) { t.rules = 2; }), "65 rules version 2, this build has 1");
-  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map21"; }), "65 unknown env 'map21' (other maps? see -w)");
+  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map21"; }), "65 unknown env 'map21'");
   EXPECT_EQ(refused([](Trajectory& t) { t.task = "R-R"; }), "65 unknown task 'R-R'");
-  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }),
-            "65 env 'map4' is not the one of that name here (other maps? see -w)");
+  EXPECT_EQ(refused([](Trajectory& t) { t.env = "map4"; }), "65 env 'map4' is not the one of that name here");
+  for (const char* env : {"map21", "map4"}) {
+    Trajectory t = good;
+    t.env = env;
+    EXPECT_TRUE(fails_for(kOtherWorld, [&] { replay(world, t); }));
+  }
   EXPECT_EQ(refused([](Trajectory& t) { t.start.erase("G"); }), "65 field 'start': no place for 'G'");
   EXPECT_EQ(refused([](Trajectory& t) { t.start["Z"] = t.start["B"]; }),
             "65 field 'start': found 7 places, expected the agent's and those of 5 treasures");

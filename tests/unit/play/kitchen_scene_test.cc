@@ -389,10 +389,11 @@ TEST(SceneFolder, IsAWorldInNaturalOrder) {
   const std::unique_ptr<World> some = restore_world("kitchen", chosen, world.get());
   ASSERT_EQ(some->envs(), 2);
   EXPECT_EQ(some->environments()[0].name, "k10");
-  const std::string none = "64 the kitchens lie in files of their own: ";
-  EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen); }), none + "name their folder with -w kitchen:DIR");
-  EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen, &small_world()); }),
-            none + "expected -w kitchen:DIR, found the built-in 'kitchen'");
+  const std::string none = "64 the kitchens lie in files of their own";
+  EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen); }), none);
+  EXPECT_TRUE(fails_for(kNoSource, [&] { restore_world("kitchen", chosen); }));
+  EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen, &small_world()); }), none + ": found the built-in 'kitchen'");
+  EXPECT_TRUE(fails_for(kOtherSource, [&] { restore_world("kitchen", chosen, &small_world()); }));
   EXPECT_EQ(thrown([&] { restore_world("kitchen", chosen, some.get()); }), "nothing thrown");
   EXPECT_EQ(thrown([&] { restore_world("kitchen", world->environments(), some.get()); }),
             "65 env 'k9': no scene of that name in the folder");
@@ -440,8 +441,8 @@ TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   const Checkpoint planned = describe_model(model, small_world());
   EXPECT_FALSE(lies_in_files(planned));
   EXPECT_EQ(planned.extractor, small_world().extractor());
-  EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }),
-            "64 the checkpoint holds its environments: -w is for those that lie in files of their own");
+  EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }), "64 the checkpoint holds its environments");
+  EXPECT_TRUE(fails_for(kNeedsNoSource, [&] { world_of(planned, "kitchen"); }));
 }
 
 // Its encoder would read what the world does not write.

@@ -200,9 +200,11 @@ TEST(Split, RefusesPlansThatCannotBeMet) {
   p.singles = {{"e1", "t1"}};
   EXPECT_EQ(refused(p), "64 cannot have 18 seen pairs: 5 x 5 pairs with these single ones allow 1 to 17");
   p.singles.push_back({"e1", "t2"});
-  EXPECT_EQ(refused(p), "64 --single e1,t2: its environment or its task has another single pair already");
+  EXPECT_EQ(refused(p), "64 e1,t2: its environment or its task has another single pair already");
+  EXPECT_TRUE(fails_for(kSinglePair, [&] { split_pairs(p); }));
   p.singles = {{"e9", "t1"}};
-  EXPECT_EQ(refused(p), "64 --single: 'e9' is no environment of this split");
+  EXPECT_EQ(refused(p), "64 e9,t1: 'e9' is no environment of this split");
+  EXPECT_TRUE(fails_for(kSinglePair, [&] { split_pairs(p); }));
   p.singles = {{"e1", "t1"}};
   p.setting = 2;
   EXPECT_EQ(refused(p), "64 single pairs belong to setting 1");

@@ -518,8 +518,8 @@ TEST(Compare, RefusesWhatCannotBeCompared) {
   b.matrix.rows[0].eval_seed = 9;
   EXPECT_EQ(thrown([&] { compare(a, b, false); }),
             "65 a.tsv and b.tsv have no pair with the same start states (eval_seed, first_episode, episodes) and the "
-            "same seen; "
-            "--any-start compares other start states, too");
+            "same seen");
+  EXPECT_TRUE(fails_for(kOtherStarts, [&] { compare(a, b, false); }));
   EXPECT_EQ(thrown([&] { compare(a, b, true); }), "nothing thrown");
   MatrixSource in_p = a;
   in_p.matrix.rows[0].part = "P";

@@ -1,0 +1,86 @@
+load common
+
+# What an option of the command would help against, and that no other option is named.
+
+# overflow TENSOR FILE: the checkpoint with every value of a tensor so large that products of it are infinite.
+overflow() {
+    local header begin end
+    header=$(od -An -tu8 -N8 "$2" | tr -d ' ')
+    read -r begin end < <(head -c $((8 + header)) "$2" | tail -c "$header" | jq -r --arg name "$1" '.[$name].data_offsets | @tsv')
+    head -c $((8 + header + begin)) "$2"
+    # 1.7e38, four bytes each.
+    head -c $((end - begin)) /dev/zero | tr '\0' '\1' | sed 's/\x01\x01\x01\x01/\x00\x00\x00\x7f/g'
+    tail -c +$((9 + header + end)) "$2"
+}
+
+setup_file() {
+    make_inputs
+    sed 's/"env":"map[0-9]*"/"env":"map21"/' e.jsonl >other.jsonl
+    synpo-train "${TINY[@]}" -m mlp -n 1 -p pairs.tsv --strip <e.jsonl | synpo-eval -q -p two.tsv -n 1 >mlp.tsv
+    synpo-matrix merge m.tsv mlp.tsv >both.tsv
+    synpo-eval -q -p two.tsv -n 1 -s 7 <a.ckpt >seed7.tsv
+    overflow theta a.ckpt >huge.ckpt
+}
+
+setup() {
+    mkdir "$BATS_TEST_TMPDIR/work"
+    cd "$BATS_TEST_TMPDIR/work" || exit
+    ln -s "$BATS_FILE_TMPDIR"/* .
+}
+
+# The last line on stderr is just this.
+says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] || complain "found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1'"; }
+
+@test "an unknown maze: -w" {
+    why="standard input: line 1: unknown env 'map21' (other maps? see -w)"
+    fails 65 synpo-gen-expert --relabel <other.jsonl
+    says_all "synpo-gen-expert: $why"
+    fails 65 synpo-train "${TINY[@]}" -n 1 <other.jsonl
+    says_all "synpo-train: $why"
+    fails 65 synpo-finetune adapt -q -c a.ckpt -n 1 <other.jsonl
+    says_all "synpo-finetune: $why"
+    fails 65 synpo-render episode <other.jsonl
+    says_all "synpo-render: $why"
+}
+
+@test "a loss that is not finite: --lr" {
+    why="the loss is not finite at update 1: try a smaller --lr"
+    fails 70 synpo-train "${TINY[@]}" -n 1 --init huge.ckpt <e.jsonl
+    says_all "synpo-train: $why"
+    fails 70 synpo-finetune ppo -q --lanes 2 --rollout 8 --steps 16 --minibatches 1 -c huge.ckpt
+    says_all "synpo-finetune: $why"
+    fails 70 synpo-finetune adapt -q -n 1 -c huge.ckpt <e.jsonl
+    says_all "synpo-finetune: $why"
+}
+
+@test "no training state: --init" {
+    fails 65 synpo-train --resume a.ckpt <e.jsonl
+    says_all "synpo-train: the checkpoint has no training state (was it stripped?): --init takes its weights"
+}
+
+@test "several methods: --method" {
+    for command in "matrix show" "matrix wide" "render heatmap"; do
+        # shellcheck disable=SC2086
+        fails 65 synpo-$command both.tsv
+        says "rows of several methods ('mlp', 'synpo'): choose one with --method"
+    done
+}
+
+@test "other start states: --any-start" {
+    fails 65 synpo-matrix compare m.tsv seed7.tsv
+    says "and the same seen; --any-start compares other start states, too"
+    synpo-matrix compare --any-start m.tsv seed7.tsv
+}
+
+@test "a single pair that cannot be: --single" {
+    fails 64 synpo-matrix split --single map1,R-B --single map1,O-R
+    says_all "synpo-matrix: --single map1,O-R: its environment or its task has another single pair already"
+    fails 64 synpo-matrix split --single map99,R-B
+    says_all "synpo-matrix: --single map99,R-B: 'map99' is no environment of this split"
+}
+
+@test "a policy whose loss demonstrations cannot feed" {
+    synpo-train "${TINY[@]}" -m sf --sf-loss td -n 1 <e.jsonl >sf.ckpt
+    fails 64 synpo-finetune adapt -q -c sf.ckpt -n 1 <e.jsonl
+    says "needs more than demonstrations hold (sf: synpo-train --sf-loss ce makes policies that can be adapted)"
+}

@@ -1,0 +1,19 @@
+// What the tools say about failures of the library, where an option of theirs helps.
+#pragma once
+#include "base/cli/options.h"
+#include "learn/adapt.h"
+#include "learn/finite.h"
+#include "learn/imitate.h"
+#include "play/episode.h"
+#include "play/model.h"
+#include "play/world_factory.h"
+
+namespace synpo {
+
+constexpr Advice kSeeWorld = {kOtherWorld, "{} (other maps? see -w)"};
+constexpr Advice kNameFolder = {kNoSource, "{}: name their folder with -w kitchen:DIR"};
+constexpr Advice kNameOtherFolder = {kOtherSource, "{}, expected -w kitchen:DIR"};
+constexpr Advice kLeaveWorld = {kNeedsNoSource, "{}: -w is for those that lie in files of their own"};
+constexpr Advice kSmallerRate = {kNotFinite, "{}: try a smaller --lr"};
+
+}  // namespace synpo
