@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/error.h"
-#include "stats/interval.h"
 
 namespace synpo {
 
@@ -14,7 +13,7 @@ double value_at(const Curve& curve, double x) {
   return curve.y[right - 1] + share * (curve.y[right] - curve.y[right - 1]);
 }
 
-MeanCurve mean_curve(const std::vector<Curve>& runs, Band band) {
+MeanCurve mean_curve(const std::vector<Curve>& runs, Band band, const Interval& bounds) {
   MeanCurve out;
   out.runs = int64_t(runs.size());
   out.longest = runs.front().x.back();
@@ -37,8 +36,8 @@ MeanCurve mean_curve(const std::vector<Curve>& runs, Band band) {
     out.mean.push_back(moments.mean);
     if (band == Band::kNone || runs.size() < 2) continue;
     const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
-    out.low.push_back(band == Band::kSd ? moments.mean - moments.sd : *lowest);
-    out.high.push_back(band == Band::kSd ? moments.mean + moments.sd : *highest);
+    out.low.push_back(band == Band::kSd ? std::max(bounds.low, moments.mean - moments.sd) : *lowest);
+    out.high.push_back(band == Band::kSd ? std::min(bounds.high, moments.mean + moments.sd) : *highest);
   }
   return out;
 }

@@ -1,7 +1,10 @@
 // Curves over several runs: their mean and a band around it, on grids that need not agree.
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <vector>
+
+#include "stats/interval.h"
 
 namespace synpo {
 
@@ -22,8 +25,10 @@ struct MeanCurve {
 };
 
 // The mean at every x of any run, where all runs have values. kSd is the standard deviation with divisor runs - 1 to
-// either side, kRange reaches from the lowest run to the highest. No curve may be empty. Throws kData where the runs
-// have no x in common.
-MeanCurve mean_curve(const std::vector<Curve>& runs, Band band);
+// either side, but no further than the values can be: `bounds`. kRange reaches from the lowest run to the highest. No
+// curve may be empty. Throws kData where the runs have no x in common.
+MeanCurve mean_curve(const std::vector<Curve>& runs, Band band,
+                     const Interval& bounds = {-std::numeric_limits<double>::infinity(),
+                                               std::numeric_limits<double>::infinity()});
 
 }  // namespace synpo

@@ -119,6 +119,6 @@ int curves(int argc, char** argv) {
     for (const std::string& path : method.paths)
       methods.back().runs.push_back(read_curves(path, axis, rate > 0 ? 1 / rate / 60 : 1, measure, y));
   }
-  finish(output, draw_curves(average_runs(methods, measure.parts, style.band), style, font));
+  finish(output, draw_curves(average_runs(methods, measure.parts, style.band, measure.percent), style, font));
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "base/error.h"
 #include "draw/colour.h"
@@ -81,7 +82,10 @@ void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
 
 }  // namespace
 
-CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band) {
+CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band,
+                      bool percent) {
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  const Interval bounds = percent ? Interval{0, 100} : Interval{-kNone, kNone};
   CurveSet set;
   for (const MethodRuns& method : methods) set.methods.push_back({method.label, {}});
   for (size_t part = 0; part < parts.size(); ++part) {
@@ -91,7 +95,7 @@ CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<
       for (const auto& run : method.runs)
         if (!run[part].x.empty()) runs.push_back(run[part]);
       try {
-        curves.push_back(runs.empty() ? std::nullopt : std::optional(mean_curve(runs, band)));
+        curves.push_back(runs.empty() ? std::nullopt : std::optional(mean_curve(runs, band, bounds)));
       } catch (const Error& error) {
         fail(error.code(), method.label.empty() ? "" : quoted(method.label) + ": ", error.what());
       }

@@ -31,8 +31,9 @@ struct MethodRuns {
   std::vector<std::vector<Curve>> runs;
 };
 // Means over the runs. Parts that no method has values for are dropped. Throws kData where nothing is left, or runs of
-// a method have no x in common.
-CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band);
+// a method have no x in common. Bands of values in `percent` stay within 0 and 100.
+CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<std::string>& parts, Band band,
+                      bool percent = false);
 
 // A line across at a value, with a label beside the plot.
 struct CurveMark {
