@@ -2,28 +2,37 @@
 
 #include <cstdlib>
 #include <numeric>
+#include <string>
+#include <vector>
 
-#include "draw/grid/grid_face.h"
 #include "draw/terminal/terminal.h"
+#include "draw/worlds/faces.h"
+#include "helpers/heat_tables.h"
+#include "world/grid/maze.h"
 
 namespace synpo {
 namespace {
 
 HeatTable table() {
   Matrix m;
-  const auto add = [&](const char* env, const char* task, bool seen, int64_t k, int64_t n) {
-    MatrixRow row;
-    row.env = env;
-    row.task = task;
-    row.seen = seen;
-    row.successes = k;
-    row.episodes = n;
-    m.rows.push_back(row);
-  };
-  add("map1", "push", true, 100, 100);
-  add("map2", "push", false, 999, 1000);
-  add("map10", "lift", true, 1, 1000);
+  m.rows = {matrix_row("map1", "push", true, 100, 100), matrix_row("map2", "push", false, 999, 1000),
+            matrix_row("map10", "lift", true, 1, 1000)};
+  for (MatrixRow& row : m.rows) row.method = row.run = "";
   return pool_matrix(m);
+}
+
+// Names of mazes that stand in the first line.
+size_t mazes_in_a_row(int64_t columns, int width) {
+  MapStyle style;
+  style.columns = columns;
+  const std::unique_ptr<const WorldFace> face = open_face("gridworld");
+  std::vector<int> all(size_t(face->world().envs()));
+  std::iota(all.begin(), all.end(), 0);
+  const std::string text = face->plans_text(all, style, TerminalColour::kNone, width),
+                    line = text.substr(0, text.find('\n'));
+  size_t names = 0;
+  for (size_t at = line.find("map"); at != std::string::npos; at = line.find("map", at + 1)) ++names;
+  return names;
 }
 
 TEST(Terminal, WithoutColour) {
@@ -65,32 +74,18 @@ TEST(Terminal, BlocksShrinkToTheWidth) {
   EXPECT_EQ(second_line(4), "push    ");
 }
 
-// Names of mazes that stand in the first line.
-size_t mazes_in_a_row(int64_t columns, int width) {
-  MapStyle style;
-  style.columns = columns;
-  const GridFace face(std::make_shared<const GridSet>(builtin_mazes()));
-  std::vector<int> all(size_t(face.world().envs()));
-  std::iota(all.begin(), all.end(), 0);
-  const std::string text = face.plans_text(all, style, TerminalColour::kNone, width),
-                    line = text.substr(0, text.find('\n'));
-  size_t names = 0;
-  for (size_t at = line.find("map"); at != std::string::npos; at = line.find("map", at + 1)) ++names;
-  return names;
-}
-
 TEST(Terminal, Mazes) {
   const Maze& maze = builtin_mazes()[0];
-  const GridFace face(std::make_shared<const GridSet>(builtin_mazes()));
+  const std::unique_ptr<const WorldFace> face = open_face("gridworld");
   MapStyle style;
   style.title = "One";
-  const std::string plain = face.plans_text({0}, style, TerminalColour::kNone, 80);
+  const std::string plain = face->plans_text({0}, style, TerminalColour::kNone, 80);
   ASSERT_TRUE(plain.starts_with("One\n\nmap1\n" + std::string(32, '#') + '\n'));
   const size_t first = plain.find('#');
   for (int cell = 0; cell < kGridCells; ++cell)
     EXPECT_EQ(plain[first + cell / kGridSide * (2 * kGridSide + 1) + cell % kGridSide * 2], maze.wall[cell] ? '#' : ' ')
         << cell;
-  const std::string coloured = face.plans_text({0}, {}, TerminalColour::kTrue, 80);
+  const std::string coloured = face->plans_text({0}, {}, TerminalColour::kTrue, 80);
   EXPECT_TRUE(coloured.starts_with("map1\n\033[38;5;231;48;2;62;70;82m" + std::string(32, ' ') + "\033[0m\n"));
   EXPECT_EQ(coloured.find('#'), std::string::npos);
 }

@@ -8,11 +8,13 @@
 #include "base/error.h"
 #include "draw/episode/agent_view.h"
 #include "draw/episode/episode_picture.h"
+#include "draw/face/path.h"
 #include "draw/grid/grid_face.h"
 #include "draw/kitchen/kitchen_face.h"
 #include "draw/worlds/faces.h"
 #include "helpers/corridor.h"
 #include "helpers/font.h"
+#include "helpers/mazes.h"
 
 namespace synpo {
 namespace {
@@ -119,6 +121,27 @@ TEST(WorldFace, AFewLinesGiveAPlanAndTheWayOverIt) {
   for (int moment = 0; moment <= each.steps(); ++moment)
     frames.insert(draw_episode_frame(own(), each, moment, style, font()).png());
   EXPECT_EQ(frames.size(), size_t(each.steps()) + 1);
+}
+
+TEST(Path, TheSameWayAgainRunsBesideTheFirst) {
+  const PlanGrid place = {0, 0, 100, kGridSide};
+  const uint8_t a = cell(1, 1), b = cell(1, 2);
+  const std::vector<PathCorner> corners = path_corners(place, {a, b, a, b});
+  std::set<double> rows;
+  for (size_t i = 1; i < corners.size(); ++i)
+    if (corners[i].step != corners[i - 1].step) rows.insert(corners[i].at.y);
+  EXPECT_EQ(rows.size(), 3u);
+  for (const double y : rows) EXPECT_LT(std::abs(y - 150), 50) << "inside its cells";
+  EXPECT_EQ(path_corners(place, {a, a, a}).size(), 1u);
+}
+
+TEST(Path, RunsOverAPlanOfAnyWidth) {
+  const PlanGrid place = {0, 0, 100, 30};
+  const std::vector<PathCorner> corners = path_corners(place, {31, 61, 62});
+  EXPECT_EQ(corners.front().at.x, 150);
+  EXPECT_EQ(corners.front().at.y, 150);
+  EXPECT_EQ(corners.back().at.x, 250);
+  EXPECT_EQ(corners.back().at.y, 250);
 }
 
 TEST(Faces, AreChosenByTheWorldAndByItsName) {
