@@ -43,8 +43,7 @@ void check_length(TrajectoryStream& stream, const Settings& settings) {
 }
 
 // Updates until the total is reached or a signal comes; returns the signal, or 0.
-int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, double limit_s) {
-  RunLog log(settings.log, !settings.resume.empty());
+int train(Imitation& run, TrajectoryStream& stream, RunOutputs& outputs, const Settings& settings, double limit_s) {
   const bool counted = run.total_updates() != kUnknown;
   Progress progress("synpo-train", "updates", counted ? uint64_t(run.total_updates()) : 0, settings.quiet,
                     uint64_t(run.updates()));
@@ -61,7 +60,11 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
     return run.updates() < run.total_updates() || (limit_s > 0 && run.updates() < first + measured);
   };
   while (goes_on() && stop_signal() == 0) {
-    if (!run.update(stream)) fail(Exit::kData, "standard input has no trajectory");
+    try {
+      if (!run.update(stream)) fail(Exit::kData, "standard input has no trajectory");
+    } catch (const Stopped&) {
+      break;
+    }
     if (stream.ended()) check_length(stream, settings);
     const int64_t done = run.updates();
     if (limit_s > 0 && done - first == measured) {
@@ -86,10 +89,10 @@ int train(Imitation& run, TrajectoryStream& stream, const Settings& settings, do
           std::fprintf(stderr, "synpo-train: update %lld: success %s seen, %s unseen\n", (long long)done,
                        percent(row.evaluation->seen_success).c_str(), percent(row.evaluation->unseen_success).c_str());
       }
-      log.write(row);
+      outputs.log().write(run_log_values(row));
       reported = now();
     }
-    if (settings.saves(done, last)) write_file(settings.save, format_checkpoint(run.checkpoint(true)));
+    if (settings.saves(done, last)) outputs.save(run.checkpoint(true));
     progress.update(uint64_t(done), note);
   }
   return stop_signal();
@@ -156,21 +159,19 @@ int body(int argc, char** argv) {
     fail(Exit::kUsage, "the run was stopped before its --time was told in updates: give -n or --time");
 
   // Made before the training, so that hours of it don't end in "cannot create".
-  Output output(s.output, Output::Kind::kBinary, s.force);
-  if (!s.save.empty()) Output probe(s.save);
+  RunOutputs outputs(s, s.resume, run_log_columns());
   int signal = 0;
   if (run->updates() < run->total_updates() || limit_s > 0) {
     Input input("-");
     TrajectoryStream stream(input, world, run->allowed(), run->window());
     stream.skip(run->stream_lines(), run->stream_hash());
-    signal = train(*run, stream, s, limit_s);
+    signal = train(*run, stream, outputs, s, limit_s);
     if (run->updates() == 0) stop_if_asked();
-    if (!s.save.empty()) write_file(s.save, format_checkpoint(run->checkpoint(true)));
+    if (!s.save.empty()) outputs.save(run->checkpoint(true));
     if (signal == 0) check_length(stream, s);
   }
   const bool unfinished = run->updates() < run->total_updates();
-  output.write(format_checkpoint(run->checkpoint(!s.strip)));
-  output.finish();
+  outputs.finish(run->checkpoint(!s.strip));
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
   if (!s.quiet)

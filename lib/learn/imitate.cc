@@ -94,11 +94,16 @@ void Imitation::take_weights(const Model& other) {
 
 void Imitation::add_trajectories(TrajectoryStream& stream) {
   const int64_t wanted = int64_t(model_.updates == 0 ? std::max(options_.fill, options_.read) : options_.read);
-  for (int64_t i = 0; i < wanted; ++i) {
+  // All or none of them: a signal may come while the stream is read.
+  std::vector<Episode> episodes;
+  while (int64_t(episodes.size()) < wanted) {
     std::optional<Episode> episode = stream.next();
     if (!episode) break;
-    if (seen_grows_ && !model_.is_seen(episode->pair)) model_.seen.push_back(episode->pair);
-    memory_.add(std::move(*episode));
+    episodes.push_back(std::move(*episode));
+  }
+  for (Episode& episode : episodes) {
+    if (seen_grows_ && !model_.is_seen(episode.pair)) model_.seen.push_back(episode.pair);
+    memory_.add(std::move(episode));
   }
   stream_lines_ = stream.lines();
   stream_hash_ = stream.hash();

@@ -27,7 +27,7 @@ class Imitation {
   void take_weights(const Model& other);
 
   // One update: reads, draws, learns. False when there is nothing to draw from: the stream ended before its first
-  // trajectory.
+  // trajectory. Throws Stopped, and is as it was before, where a stop signal comes while the stream is read.
   bool update(TrajectoryStream& stream);
 
   // Where the stream stood; a resumed run skips to there.

@@ -13,13 +13,13 @@ teardown() {
 }
 
 # begin LINES OPTION...: training in the background that has got the first LINES lines of e.jsonl and waits for more.
-# Each update reads one, so that it is known where it stands.
+# Each update reads one, so that it is known where it stands. A script's shell has SIGINT ignored in the background, and ignored it would stay.
 begin() {
     local lines=$1
     shift
     rm -f stream log.tsv
     mkfifo stream
-    synpo-train "$@" --log log.tsv --report 1 <stream >stopped 2>err 3>&- &
+    env --default-signal=HUP,INT synpo-train "$@" --log log.tsv --report 1 <stream >stopped 2>err 3>&- &
     pid=$!
     exec 9>stream
     head -n "$lines" e.jsonl >&9
@@ -36,6 +36,16 @@ reaches() {
     complain "update $1 did not come: $(cat log.tsv err)"
 }
 
+reaches_at_least() {
+    local i
+    for ((i = 0; i < 600; ++i)); do
+        [ "$(tail -n 1 log.tsv 2>/dev/null | grep -o '^[0-9]*')" -ge "$1" ] 2>/dev/null && return
+        kill -0 "$pid" || complain "it ended before update $1: $(cat err)"
+        sleep 0.02
+    done
+    complain "update $1 did not come: $(cat log.tsv err)"
+}
+
 # ends CODE: the training ends, with that code.
 ends() {
     local status=0
@@ -45,7 +55,7 @@ ends() {
     [ "$status" -eq "$1" ] || complain "exit code $status, expected $1: $(cat err)"
 }
 
-@test "SIGTERM: the update is finished, the checkpoint written, 143; resumed equals unbroken, both recipes" {
+@test "SIGTERM while it waits for the stream: the checkpoint is written, 143; resumed equals unbroken, both recipes" {
     for tiny in TINY TINY_PAPER; do
         declare -n options=$tiny
         fill=20
@@ -54,9 +64,8 @@ ends() {
         begin $((fill + 4)) "${options[@]}" -n 12 --save saved
         reaches 5
         kill -TERM "$pid"
-        sed -n "$((fill + 5)),\$p" e.jsonl >&9
         ends 143
-        [ "$(described saved .updates)" -eq 6 ]
+        [ "$(described saved .updates)" -eq 5 ]
         cmp saved stopped
         synpo-train -q --resume saved <e.jsonl >resumed
         cmp unbroken resumed
@@ -64,14 +73,56 @@ ends() {
     done
 }
 
-@test "SIGINT: 130, and the checkpoint is on stdout as well" {
-    begin 24 "${TINY[@]:1}" -n 12
+@test "SIGTERM in the middle of what an update reads: none of it counts, resumed equals unbroken" {
+    synpo-train "${TINY[@]}" -n 8 --read 5 <e.jsonl >unbroken
+    begin 33 "${TINY[@]}" -n 8 --read 5 --save saved
+    reaches 3
+    kill -TERM "$pid"
+    ends 143
+    [ "$(described saved .updates)" -eq 3 ]
+    synpo-train -q --resume saved <e.jsonl >resumed
+    cmp unbroken resumed
+}
+
+@test "SIGTERM while it computes: the update is finished, the checkpoint written, 143; resumed equals unbroken" {
+    synpo-train "${TINY[@]}" -n 60 <e.jsonl >unbroken
+    begin 60 "${TINY[@]}" -n 60 --save saved
+    exec 9>&-
+    reaches_at_least 3
+    kill -TERM "$pid"
+    ends 143
+    [ "$(described saved .updates)" -eq "$(tail -n 1 log.tsv | cut -f 1)" ]
+    [ "$(described saved .updates)" -lt 60 ]
+    cmp saved stopped
+    synpo-train -q --resume saved <e.jsonl >resumed
+    cmp unbroken resumed
+}
+
+@test "SIGINT: 130, and the checkpoint is on stdout as well; SIGHUP: 129" {
+    for signal in INT.130 HUP.129; do
+        begin 24 "${TINY[@]:1}" -n 12
+        reaches 5
+        kill -"${signal%.*}" "$pid"
+        ends "${signal#*.}"
+        [ "$(described stopped .updates)" -eq 5 ]
+        grep -q '^synpo-train: stopped: 5 updates' err
+    done
+}
+
+@test "what was ignored at the start stays ignored: SIGINT in a script's background, SIGHUP under nohup" {
+    synpo-train "${TINY[@]}" -n 12 <e.jsonl >unbroken
+    rm -f stream
+    mkfifo stream
+    env --ignore-signal=HUP,INT synpo-train "${TINY[@]}" -n 12 --log log.tsv --report 1 <stream >stopped 3>&- &
+    pid=$!
+    exec 9>stream
+    head -n 24 e.jsonl >&9
     reaches 5
     kill -INT "$pid"
+    kill -HUP "$pid"
     sed -n '25,$p' e.jsonl >&9
-    ends 130
-    [ "$(described stopped .updates)" -eq 6 ]
-    grep -q '^synpo-train: stopped: 6 updates' err
+    ends 0
+    cmp unbroken stopped
 }
 
 @test "stopped twice, with other numbers of threads: still equal" {
@@ -79,14 +130,12 @@ ends() {
     begin 22 "${TINY[@]}" -n 12 -j 1 --save saved
     reaches 3
     kill -TERM "$pid"
-    sed -n '23,$p' e.jsonl >&9
     ends 143
-    begin 26 -q --resume saved -j 2 --save saved
-    reaches 7
+    begin 25 -q --resume saved -j 2 --save saved
+    reaches 6
     kill -TERM "$pid"
-    sed -n '27,$p' e.jsonl >&9
     ends 143
-    [ "$(described saved .updates)" -eq 8 ]
+    [ "$(described saved .updates)" -eq 6 ]
     synpo-train -q --resume saved <e.jsonl >resumed
     cmp unbroken resumed
 }

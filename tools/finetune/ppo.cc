@@ -35,8 +35,7 @@ const std::vector<std::string> kColumns = {"update",       "states",      "secon
                                            "unseen_reward"};
 
 // Updates until there are enough steps or a signal comes; returns the signal, or 0.
-int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
-  TsvLog log(s.log, !s.resume.empty(), kColumns);
+int train(Ppo& run, Parallel& parallel, const World& world, RunOutputs& outputs, const Settings& s) {
   Progress progress("synpo-finetune", "steps", uint64_t(s.steps), s.quiet, uint64_t(run.steps()));
   const TimePoint start = now();
   TimePoint reported = start;
@@ -55,16 +54,16 @@ int train(Ppo& run, Parallel& parallel, const World& world, const Settings& s) {
       if (s.evaluates(updates, last))
         e = evaluate_sample(parallel, world, model, model.parameters.data(), model.statistics.data(),
                             int(s.evaluate_episodes));
-      log.write({double(updates), double(run.steps()), seconds_since(start), rate, n, r.finished.successes / n,
-                 r.finished.wrong / n, r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value,
-                 r.entropy, r.kl, r.clip_fraction, r.explained_variance, e.seen_success, e.seen_reward,
-                 e.unseen_success, e.unseen_reward});
+      outputs.log().write({double(updates), double(run.steps()), seconds_since(start), rate, n,
+                           r.finished.successes / n, r.finished.wrong / n, r.finished.reward_cents / 100.0 / n,
+                           r.finished.length / n, r.policy, r.value, r.entropy, r.kl, r.clip_fraction,
+                           r.explained_variance, e.seen_success, e.seen_reward, e.unseen_success, e.unseen_reward});
       note = short_count(rate) + " steps/s";
       if (n > 0) note += concat(", success ", std::lround(100 * r.finished.successes / n), " %");
       reported = now();
       reported_steps = run.steps();
     }
-    if (s.saves(updates, last)) write_file(s.save, format_checkpoint(run.checkpoint(true)));
+    if (s.saves(updates, last)) outputs.save(run.checkpoint(true));
     progress.update(uint64_t(run.steps()), note);
   }
   return stop_signal();
@@ -157,11 +156,9 @@ int ppo(int argc, char** argv) {
   else if (random)
     run.measure_statistics(40);
 
-  Output output(s.output, Output::Kind::kBinary, s.force);
-  if (!s.save.empty()) Output probe(s.save);
-  const int signal = train(run, parallel, world, s);
-  if (!s.save.empty()) write_file(s.save, format_checkpoint(run.checkpoint(true)));
-  output.write(format_checkpoint(run.checkpoint(!s.strip)));
-  output.finish();
+  RunOutputs outputs(s, s.resume, kColumns);
+  const int signal = train(run, parallel, world, outputs, s);
+  if (!s.save.empty()) outputs.save(run.checkpoint(true));
+  outputs.finish(run.checkpoint(!s.strip));
   return run.steps() < s.steps && signal ? 128 + signal : 0;
 }

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "base/error.h"
+#include "base/files/descriptor.h"
+#include "base/files/file_uses.h"
 #include "base/files/io.h"
 #include "base/signals.h"
 #include "base/text.h"
@@ -279,13 +281,15 @@ int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char
     std::fprintf(stderr, "%s: %s\n", tool, message);
     return int(code);
   };
-  // Some launchers have it ignored; a reader that went away shall end the tool without a word.
-  std::signal(SIGPIPE, SIG_DFL);
+  prepare_signals();
   try {
+    open_standard_descriptors();
+    const FileUses uses;
     return body(argc, argv);
   } catch (const Error& error) {
     return report(error.code(), advised(advised(error, advice), kCommonAdvice).what());
   } catch (const Stopped& stopped) {
+    if (stopped.signal == SIGPIPE) end_by_signal(SIGPIPE);
     return 128 + stopped.signal;
   } catch (const std::bad_alloc&) {
     return report(Exit::kInternal, "out of memory");

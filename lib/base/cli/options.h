@@ -95,7 +95,8 @@ struct Advice {
   const char* words;
 };
 
-// Runs a tool's main: catches what it throws, prints one line "tool: message" on stderr, returns the exit code.
+// Runs a tool's main, with signals, standard descriptors and the uses of files as every tool has them: catches what it
+// throws, prints one line "tool: message" on stderr, returns the exit code.
 int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv),
              const std::vector<Advice>& advice = {});
 

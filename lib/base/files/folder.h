@@ -1,9 +1,12 @@
 // A folder of files that appears whole or not at all.
 #pragma once
+#include <memory>
 #include <string>
 #include <string_view>
 
 namespace synpo {
+
+class UnfinishedFolder;
 
 // Writes into a temporary folder beside `path` that takes the name in finish(). Unfinished, it leaves nothing behind. A
 // folder that cannot be made, or is there and not empty, is kCantCreate; a full disk kIo.
@@ -11,14 +14,12 @@ class OutputFolder {
  public:
   explicit OutputFolder(const std::string& path);
   ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
 
   void write(const std::string& name, std::string_view bytes);
   void finish();
 
  private:
-  std::string path_, temporary_;
+  std::unique_ptr<UnfinishedFolder> temporary_;
 };
 
 }  // namespace synpo

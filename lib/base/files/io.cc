@@ -6,45 +6,50 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <utility>
 
 #include "base/error.h"
+#include "base/files/destination.h"
+#include "base/files/file_uses.h"
+#include "base/files/unfinished.h"
+#include "base/signals.h"
 
 namespace synpo {
 namespace {
 constexpr size_t kBuffer = 1 << 16;
 }
 
-Input::Input(const std::string& path) : fd_(0), name_("standard input"), buffer_(kBuffer) {
-  if (path == "-") {
-    if (isatty(0)) fail(Exit::kUsage, kTerminalInput, "standard input is a terminal: expected a stream or a file");
-    return;
-  }
-  name_ = path;
-  fd_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (fd_ < 0) fail(Exit::kNoInput, "cannot open '", path, "': ", std::strerror(errno));
-  struct stat status;
-  if (fstat(fd_, &status) == 0 && S_ISDIR(status.st_mode)) {
-    close(fd_);
-    fail(Exit::kNoInput, "cannot open '", path, "': it is a folder");
-  }
-}
+Input::Input(int fd, std::string name) : fd_(fd), name_(std::move(name)), buffer_(kBuffer) {}
 
-Input::~Input() {
-  if (fd_ > 0) close(fd_);
+Input::Input(const std::string& path) : Input(STDIN_FILENO, path == "-" ? "standard input" : path) {
+  if (path == "-") {
+    if (isatty(fd_)) fail(Exit::kUsage, kTerminalInput, "standard input is a terminal: expected a stream or a file");
+    if (!is_readable(fd_)) fail(Exit::kNoInput, "cannot read standard input: it is not open for reading");
+  } else {
+    opened_ = open_to_read(path);
+    if (!opened_) fail(Exit::kNoInput, "cannot open '", path, "': ", std::strerror(errno));
+    fd_ = opened_.get();
+    struct stat status;
+    if (fstat(fd_, &status) == 0 && S_ISDIR(status.st_mode))
+      fail(Exit::kNoInput, "cannot open '", path, "': it is a folder");
+  }
+  use_as_input(path, FileIdentity::of(fd_));
 }
 
 bool Input::fill() {
   begin_ = end_ = 0;
   while (true) {
+    wait_to_read(fd_);
     const ssize_t got = ::read(fd_, buffer_.data(), buffer_.size());
     if (got > 0) {
       end_ = size_t(got);
       return true;
     }
     if (got == 0) return false;
-    if (errno != EINTR) fail(Exit::kIo, "cannot read ", name_, " at byte ", offset_, ": ", std::strerror(errno));
+    if (errno != EINTR && errno != EAGAIN)
+      fail(Exit::kIo, "cannot read ", name_, " at byte ", offset_, ": ", std::strerror(errno));
   }
 }
 
@@ -95,37 +100,42 @@ void Input::bad_line(const std::string& message) const { bad_line(Error(Exit::kD
 
 void Input::bad_line(const Error& error) const { throw error.at(concat(name_, ": line ", lines_, ": ")); }
 
-Output::Output(const std::string& path, Kind kind, bool force) : path_(path), fd_(1) {
-  if (is_stdout()) {
-    if (kind == Kind::kBinary && !force && isatty(1))
-      fail(Exit::kUsage, kTerminalOutput, "standard output is a terminal and the output is binary");
-    return;
+// Where the bytes go: stdout, or a device or a pipe that was opened, or a file under way.
+struct Output::Place {
+  OutputUse use;
+  Descriptor opened = {};
+  std::unique_ptr<UnfinishedFile> file = {};
+};
+
+Output::Output(const std::string& path, Kind kind, bool force, const std::vector<std::string>& over) : path_(path) {
+  const Destination destination = Destination::find(path);
+  place_ = std::make_unique<Place>(OutputUse(path, destination.identity(), over));
+  switch (destination.kind) {
+    case Destination::Kind::kFile:
+      destination.check_replaceable();
+      place_->file = std::make_unique<UnfinishedFile>(destination);
+      fd_ = place_->file->fd();
+      return;
+    case Destination::Kind::kDescriptor:
+      if (destination.descriptor == STDOUT_FILENO) break;
+      place_->opened = Descriptor(fcntl(destination.descriptor, F_DUPFD_CLOEXEC, 0));
+      break;
+    case Destination::Kind::kInPlace:
+      place_->opened = open_in_place(path);
   }
-  struct stat status;
-  if (stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    // A device or a pipe takes the bytes as they come; a name beside it would be of no use.
-    fd_ = open(path.c_str(), O_WRONLY | O_CLOEXEC);
-  } else {
-    // One process may have two outputs of one name.
-    const std::string stem = path + ".part" + std::to_string(getpid());
-    for (int i = 0; i < 100; ++i) {
-      temporary_ = i ? stem + "-" + std::to_string(i) : stem;
-      fd_ = open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-      if (fd_ >= 0 || errno != EEXIST) break;
-    }
+  if (destination.descriptor != STDOUT_FILENO) {
+    if (!place_->opened) destination.cannot_create(std::strerror(errno));
+    fd_ = place_->opened.get();
   }
-  if (fd_ < 0) {
-    temporary_.clear();
-    fail(Exit::kCantCreate, "cannot create '", path, "': ", std::strerror(errno));
-  }
+  if (kind == Kind::kBinary && !force && isatty(fd_))
+    fail(Exit::kUsage, kTerminalOutput, is_stdout() ? "standard output" : "'" + path + "'",
+         " is a terminal and the output is binary");
 }
 
-Output::~Output() {
-  if (fd_ > 1) close(fd_);
-  if (!finished_ && !temporary_.empty()) unlink(temporary_.c_str());
-}
+Output::~Output() = default;
 
 void Output::failed(const char* what) {
+  if (errno == EPIPE) throw Stopped{SIGPIPE};
   fail(Exit::kIo, "cannot ", what, " ", is_stdout() ? "standard output" : "'" + path_ + "'", ": ",
        std::strerror(errno));
 }
@@ -136,31 +146,20 @@ void Output::write(std::string_view bytes) {
 }
 
 void Output::flush() {
-  size_t done = 0;
-  while (done < buffer_.size()) {
-    const ssize_t put = ::write(fd_, buffer_.data() + done, buffer_.size() - done);
-    if (put < 0 && errno != EINTR) failed("write");
-    if (put > 0) done += size_t(put);
-  }
+  if (!write_all(fd_, buffer_)) failed("write");
   buffer_.clear();
 }
 
 void Output::finish() {
   flush();
-  if (temporary_.empty()) {
-    // A full disk may show only here.
-    if (fd_ == 1 ? false : close(std::exchange(fd_, -1)) != 0) failed("close");
-    finished_ = true;
-    return;
-  }
-  if (fsync(fd_) != 0 && errno != EINVAL) failed("write");
-  if (close(std::exchange(fd_, -1)) != 0) failed("close");
-  if (rename(temporary_.c_str(), path_.c_str()) != 0) failed("rename to");
-  finished_ = true;
+  if (place_->file) place_->file->publish();
+  // A full disk may show only here.
+  if (!place_->opened.close()) failed("close");
 }
 
-void write_file(const std::string& path, std::string_view bytes, Output::Kind kind, bool force) {
-  Output output(path, kind, force);
+void write_file(const std::string& path, std::string_view bytes, Output::Kind kind, bool force,
+                const std::vector<std::string>& over) {
+  Output output(path, kind, force, over);
   output.write(bytes);
   output.finish();
 }

@@ -1,23 +1,27 @@
 // Files and standard streams: lines and bytes in, checked and atomic bytes out. `-` is stdin or stdout.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "base/error.h"
+#include "base/files/descriptor.h"
 
 namespace synpo {
 
 constexpr Cause kTerminalInput{"input from a terminal"}, kTerminalOutput{"binary output to a terminal"};
 
-// Reads from a file or stdin through a buffer. Errors name the file and the line or the byte.
+// Reads from a file or stdin through a buffer. Errors name the file and the line or the byte. Every function that reads
+// throws Stopped when a stop signal has come or comes while it waits (signals.h).
 class Input {
  public:
-  // Throws kNoInput when the file cannot be opened, kUsage (kTerminalInput) when stdin is a
-  // terminal.
+  // Throws kNoInput when the file cannot be opened, kUsage when stdin is a terminal (kTerminalInput), or when the file
+  // is written by the same command (file_uses.h).
   explicit Input(const std::string& path);
-  ~Input();
+  // Reads from an open descriptor, which stays open; `name` is for messages.
+  Input(int fd, std::string name);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
@@ -40,6 +44,7 @@ class Input {
 
  private:
   bool fill();
+  Descriptor opened_;
   int fd_;
   std::string name_;
   std::vector<char> buffer_;
@@ -47,13 +52,17 @@ class Input {
   uint64_t lines_ = 0, offset_ = 0;
 };
 
-// Writes to stdout, or to a temporary beside `path` that takes the name in finish(). Unfinished output to a file leaves
-// nothing behind. A full disk is kIo, a file that cannot be made kCantCreate.
+// Writes to stdout, to a device or a pipe, or to a temporary beside the file, which takes its name in finish(). Links
+// are followed, and a file that is there keeps its rights. Unfinished output to a file leaves nothing behind. A full
+// disk is kIo, a file that cannot be made kCantCreate, and so is one whose place no other can take; a reader that went
+// away is Stopped with SIGPIPE.
 class Output {
  public:
   enum class Kind { kText, kBinary };
-  // Binary output to a terminal is refused (kUsage, kTerminalOutput) unless `force`.
-  explicit Output(const std::string& path, Kind kind = Kind::kText, bool force = false);
+  // Binary output to a terminal is refused (kUsage, kTerminalOutput) unless `force`; so is a file that the command
+  // reads or writes already (file_uses.h), but for those of `over`.
+  explicit Output(const std::string& path, Kind kind = Kind::kText, bool force = false,
+                  const std::vector<std::string>& over = {});
   ~Output();
   Output(const Output&) = delete;
   Output& operator=(const Output&) = delete;
@@ -62,18 +71,20 @@ class Output {
   void flush();
   // Flushes, checks, and gives the file its name.
   void finish();
-  bool is_stdout() const { return path_ == "-"; }
+  // Also as /dev/stdout.
+  bool is_stdout() const { return fd_ == 1; }
 
  private:
+  struct Place;
   [[noreturn]] void failed(const char* what);
-  std::string path_, temporary_;
-  int fd_;
+  std::string path_;
+  std::unique_ptr<Place> place_;
+  int fd_ = 1;
   std::string buffer_;
-  bool finished_ = false;
 };
 
 // Writes `bytes` to `path` as Output does.
 void write_file(const std::string& path, std::string_view bytes, Output::Kind kind = Output::Kind::kBinary,
-                bool force = false);
+                bool force = false, const std::vector<std::string>& over = {});
 
 }  // namespace synpo

@@ -1,17 +1,14 @@
 #include "draw/canvas/video.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
 
 #include "base/error.h"
+#include "base/files/destination.h"
+#include "base/files/file_uses.h"
+#include "base/files/unfinished.h"
 
 namespace synpo {
 namespace {
@@ -34,32 +31,31 @@ const Format& format_of(const std::string& path) {
 }  // namespace
 
 struct Video::Writer {
+  OutputUse use;
+  UnfinishedFile file;
   cv::VideoWriter video;
   cv::Mat bgr;
 };
 
-Video::Video(const std::string& path, double frames_per_second, int width, int height)
-    : writer_(std::make_unique<Writer>()), path_(path) {
+Video::Video(const std::string& path, double frames_per_second, int width, int height) : path_(path) {
   const Format& format = format_of(path);
-  const std::string temporary = path + ".part" + std::to_string(getpid()) + format.extension;
-  const int fd = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-  if (fd < 0) fail(Exit::kCantCreate, "cannot create '", path, "': ", std::strerror(errno));
-  close(fd);
-  temporary_ = temporary;
-  writer_->bgr = cv::Mat(height, width, CV_8UC3);
+  const Destination destination = Destination::find(path);
+  if (destination.kind != Destination::Kind::kFile)
+    fail(Exit::kUsage, "cannot write the video '", path, "': expected a file, found a device or a pipe");
+  destination.check_replaceable();
+  writer_.reset(new Writer{OutputUse(path, destination.identity()),
+                           UnfinishedFile(destination, format.extension),
+                           {},
+                           cv::Mat(height, width, CV_8UC3)});
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const auto& c = format.code;
-  if (!writer_->video.open(temporary_, format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]),
-                           frames_per_second, {width, height})) {
-    unlink(temporary_.c_str());
+  if (!writer_->video.open(writer_->file.path(), format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]),
+                           frames_per_second, {width, height}))
     fail(Exit::kUsage, "cannot write the video '", path, "': this OpenCV cannot write ", format.extension,
          ", but .avi it can");
-  }
 }
 
-Video::~Video() {
-  if (!temporary_.empty()) unlink(temporary_.c_str());
-}
+Video::~Video() = default;
 
 void Video::add(const Canvas& frame) {
   cv::Mat& bgr = writer_->bgr;
@@ -76,13 +72,11 @@ void Video::add(const Canvas& frame) {
 void Video::finish() {
   writer_->video.release();
   // The writer tells of no error. The backend that wrote the file counts what is in it.
-  cv::VideoCapture read(temporary_, format_of(path_).backend);
+  cv::VideoCapture read(writer_->file.path(), format_of(path_).backend);
   int whole = 0;
   while (read.isOpened() && read.grab()) ++whole;
   if (whole != frames_) fail(Exit::kIo, "cannot write '", path_, "': ", whole, " of ", frames_, " frames got there");
-  if (rename(temporary_.c_str(), path_.c_str()) != 0)
-    fail(Exit::kCantCreate, "cannot create '", path_, "': ", std::strerror(errno));
-  temporary_.clear();
+  writer_->file.publish();
 }
 
 }  // namespace synpo

@@ -8,10 +8,12 @@
 namespace synpo {
 
 // The end of the file's name chooses the format: .avi is Motion JPEG and always there, others (.mp4, .mkv) need
-// OpenCV's ffmpeg. A file beside `path` takes the name in finish(); unfinished, nothing is left behind.
+// OpenCV's ffmpeg. A file beside `path` takes the name in finish(), as an Output's does; unfinished, nothing is left
+// behind.
 class Video {
  public:
-  // Throws kUsage for a format that cannot be written, kCantCreate where the file cannot be made.
+  // Throws kUsage for a format that cannot be written and for what is no file, kCantCreate where the file cannot be
+  // made.
   Video(const std::string& path, double frames_per_second, int width, int height);
   ~Video();
 
@@ -22,8 +24,8 @@ class Video {
 
  private:
   struct Writer;
+  std::string path_;
   std::unique_ptr<Writer> writer_;
-  std::string path_, temporary_;
   int frames_ = 0;
 };
 

@@ -293,6 +293,11 @@ TEST(Checkpoint, RefusesOtherMetadata) {
         << value;
 }
 
+struct RunLog : TsvLog {
+  RunLog(const std::string& path, bool append) : TsvLog(path, append, run_log_columns()) {}
+  void write(const RunLogRow& row) { TsvLog::write(run_log_values(row)); }
+};
+
 TEST(RunLog, WritesARowAReport) {
   const TemporaryFolder folder;
   {
@@ -341,7 +346,13 @@ TEST(RunLog, IsContinuedOrWrittenAnew) {
 TEST(RunLog, NamesWhatFails) {
   const TemporaryFolder folder;
   RunLog("", false).write({});
-  EXPECT_EQ(thrown([] { RunLog full("/dev/full", false); }), "74 cannot write '/dev/full': No space left on device");
+  RunLog full("/dev/full", false);
+  EXPECT_FALSE(full.failed());
+  full.check();
+  full.write({});
+  EXPECT_TRUE(full.failed());
+  full.write({});
+  EXPECT_EQ(thrown([&] { full.check(); }), "74 cannot write '/dev/full': No space left on device");
   EXPECT_EQ(thrown([&] { RunLog none(folder.file("a/b"), false); }),
             "73 cannot create '" + folder.file("a/b") + "': No such file or directory");
 }
