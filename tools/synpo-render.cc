@@ -6,6 +6,7 @@
 #include "advice.h"
 #include "base/error.h"
 #include "draw/episode/agent_view.h"
+#include "draw/plot/curves.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
 #include "stats/matrix/heat_table.h"
@@ -77,7 +78,10 @@ int body(int argc, char** argv) {
                       "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and "
                       "policies as PNG; runs networks over views.",
                       {{"heatmap", "success matrices", heatmap, {{kSeveralMethods, "{}: choose one with --method"}}},
-                       {"curves", "run logs as curves", curves},
+                       {"curves",
+                        "run logs as curves",
+                        curves,
+                        {{kNoRoomForAxes, "{}: give a larger --size"}, {kMarkOutside, "{}: give another --y-range"}}},
                        {"map", "mazes and kitchens", map},
                        {"view", "what the agent sees", view},
                        {"episode", "a trajectory as a path through its maze or kitchen", episode, {kSeeWorld}},
@@ -103,4 +107,7 @@ int find_task(const WorldFace& face, const std::string& name) {
   return found;
 }
 
-int main(int argc, char** argv) { return run_tool("synpo-render", argc, argv, body); }
+int main(int argc, char** argv) {
+  return run_tool("synpo-render", argc, argv, body,
+                  {{kPictureTooLarge, "{}: use a smaller --scale"}, {kNoFont, "{} with --font or SYNPO_FONT"}});
+}

@@ -66,6 +66,18 @@ says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] || complain "foun
     done
 }
 
+@test "a picture that is too large, axes without room or marks outside them: --scale, --size and --y-range" {
+    fails 64 synpo-render map --scale 16 --columns 20
+    says_all "synpo-render: the picture would have 35968 x 2144 pixels: use a smaller --scale"
+    printf 'update\tstates\tseconds\tstates_per_s\tpolicy\tright_move\n1\t10\t1\t10\t0.5\t0.9\n' >run.log
+    fails 64 synpo-render curves -y policy --size 60x60 run.log
+    says_all "synpo-render: no room for the axes in a picture of 60x60 points: give a larger --size"
+    fails 64 synpo-render curves -y right_move --y-range 200: run.log
+    says_all "synpo-render: --y-range leaves nothing between 200 and 100"
+    fails 64 synpo-render curves -y policy --mark 5=x --y-range 0:1 run.log
+    says_all "synpo-render: the mark at 5 lies outside the axis from 0 to 1: give another --y-range"
+}
+
 @test "other start states: --any-start" {
     fails 65 synpo-matrix compare m.tsv seed7.tsv
     says "and the same seen; --any-start compares other start states, too"

@@ -88,7 +88,10 @@ int curves(int argc, char** argv) {
       .call(0, "x-range", "LOW:HIGH", "ends of the axis across, in updates, states or minutes",
             [&](const std::string& text) { style.x = parse_axis_range(text); })
       .call(0, "y-range", "LOW:HIGH", "ends of the axis up; in percent for rates",
-            [&](const std::string& text) { style.y = parse_axis_range(text); })
+            [&](const std::string& text) {
+              style.y = parse_axis_range(text);
+              style.y.name = "--y-range";
+            })
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .call(0, "size", "WxH", "width and height in points [380x270, 620x270 for two panels]",
             [&](const std::string& text) { parse_curves_size(text, style); });

@@ -30,7 +30,7 @@ Canvas::Canvas(int width, int height, const Font& font) : pixels_(std::make_uniq
   constexpr int kLongest = 30000;
   constexpr int64_t kMost = 400'000'000;
   if (width > kLongest || height > kLongest || int64_t{width} * height > kMost)
-    fail(Exit::kUsage, "the picture would have ", width, " x ", height, " pixels: use a smaller --scale");
+    fail(Exit::kUsage, kPictureTooLarge, "the picture would have ", width, " x ", height, " pixels");
   pixels_->bgr = cv::Mat(height, width, CV_8UC3, cv::Scalar::all(255));
 }
 

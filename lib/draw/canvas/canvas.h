@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "base/rgb.h"
 #include "draw/canvas/font.h"
 
@@ -41,9 +42,12 @@ struct Mask {
 enum class Across { kLeft, kCentre, kRight };
 enum class Upright { kTop, kMiddle, kBaseline };
 
+constexpr Cause kPictureTooLarge{"the picture is too large"};
+
 class Canvas {
  public:
-  // White. Throws kUsage for a picture of more than 400 million pixels or 30,000 a side. `font` outlives the canvas.
+  // White. Throws kUsage (kPictureTooLarge) for a picture of more than 400 million pixels or 30,000 a side. `font`
+  // outlives the canvas.
   Canvas(int width, int height, const Font& font);
   ~Canvas();
   Canvas(Canvas&&) noexcept;

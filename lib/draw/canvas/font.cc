@@ -26,9 +26,8 @@ std::string font_path(const std::string& wish) {
   if (const char* named = std::getenv("SYNPO_FONT"); named && *named) return named;
   for (const char* path : kFontPaths)
     if (std::error_code error; std::filesystem::is_regular_file(path, error)) return path;
-  fail(Exit::kNoInput,
-       "cannot find the font DejaVuSans.ttf: install the Debian package fonts-dejavu-core, or name a TrueType file "
-       "with --font or SYNPO_FONT");
+  fail(Exit::kNoInput, kNoFont,
+       "cannot find the font DejaVuSans.ttf: install the Debian package fonts-dejavu-core, or name a TrueType file");
 }
 
 // Positions at which a new character of UTF-8 text begins, and the text's end.

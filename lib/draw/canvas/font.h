@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+
 namespace synpo {
 
 // A line of text as coverage, 0 to 255, cropped to its ink across and measured from the baseline up and down.
@@ -15,10 +17,12 @@ struct TextMask {
   std::vector<uint8_t> coverage;           // [ascent + descent, width]
 };
 
+constexpr Cause kNoFont{"no font is installed"};
+
 class Font {
  public:
-  // `path` empty: $SYNPO_FONT, else DejaVu Sans where the distributions put it. Throws kNoInput when there is none,
-  // kData when the file is no font.
+  // `path` empty: $SYNPO_FONT, else DejaVu Sans where the distributions put it. Throws kNoInput when there is none
+  // (kNoFont where no file is named), kData when the file is no font.
   explicit Font(const std::string& path = "");
   ~Font();
   Font(const Font&) = delete;

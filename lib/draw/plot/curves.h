@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/error.h"
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/stroke.h"
@@ -45,6 +46,7 @@ struct CurveMark {
 // Ends left out (NaN) are chosen by the data.
 struct AxisRange {
   double low = std::numeric_limits<double>::quiet_NaN(), high = std::numeric_limits<double>::quiet_NaN();
+  std::string name = "the range";  // in messages
 };
 
 struct CurvesStyle {
@@ -81,8 +83,10 @@ struct CurvesLayout {
   Axes axes;  // the same for every panel
 };
 
-// Throws kUsage where the size leaves no room for the axes, for more than kMostMethods, and for a mark outside the
-// range given.
+constexpr Cause kNoRoomForAxes{"no room for the axes"}, kMarkOutside{"a mark outside the axis"};
+
+// Throws kUsage where the size leaves no room for the axes (kNoRoomForAxes), for more than kMostMethods, for a range
+// that leaves nothing of an axis, and for a mark outside the range given (kMarkOutside).
 CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
 Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
 

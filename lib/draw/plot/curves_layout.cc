@@ -64,11 +64,11 @@ Axis y_axis(const CurveSet& set, const CurvesStyle& style, const Axis& x, int mo
                                      : value_axis(style.y_title, span.low, span.high, most_ticks);
   if (!std::isnan(style.y.low)) axis.low = style.y.low;
   if (!std::isnan(style.y.high)) axis.high = style.y.high;
-  if (axis.high <= axis.low) fail(Exit::kUsage, "--y-range leaves nothing between ", axis.low, " and ", axis.high);
+  if (axis.high <= axis.low) fail(Exit::kUsage, style.y.name, " leaves nothing between ", axis.low, " and ", axis.high);
   for (const CurveMark& mark : style.marks)
     if (mark.value < axis.low || mark.value > axis.high)
-      fail(Exit::kUsage, "the mark at ", mark.value, " lies outside the axis from ", axis.low, " to ", axis.high,
-           ": give another --y-range");
+      fail(Exit::kUsage, kMarkOutside, "the mark at ", mark.value, " lies outside the axis from ", axis.low, " to ",
+           axis.high);
   return axis;
 }
 
@@ -127,8 +127,8 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
     return widest > 0 ? std::min(widest, inside / (4 * panels)) + out.mark_space : 0;
   };
   const auto no_room = [&] {
-    fail(Exit::kUsage, "no room for the axes in a picture of ", width / style.scale, "x", height / style.scale,
-         " points: give a larger --size");
+    fail(Exit::kUsage, kNoRoomForAxes, "no room for the axes in a picture of ", width / style.scale, "x",
+         height / style.scale, " points");
   };
   // Panels are as wide as one another, and beside each is what the labels of its marks take.
   int for_marks = 0;

@@ -12,6 +12,7 @@
 #include "draw/canvas/video.h"
 #include "draw/colour.h"
 #include "helpers/font.h"
+#include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
 
 namespace synpo {
@@ -43,6 +44,11 @@ TEST(Text, ClippingIsCounted) {
   EXPECT_EQ(canvas.clipped(), 0);
   canvas.text(40, 2, "out of it", 12, kInk);
   EXPECT_GT(canvas.clipped(), 0);
+}
+
+TEST(Canvas, TooLargeAPictureIsRefused) {
+  for (const auto& [width, height] : {std::pair(30'001, 1), std::pair(1, 30'001), std::pair(20'001, 20'000)})
+    EXPECT_TRUE(fails_for(kPictureTooLarge, [&] { Canvas(width, height, font()); })) << width;
 }
 
 TEST(Font, MissingFontNamesThePackage) {

@@ -6,6 +6,7 @@
 #include "draw/plot/curves.h"
 #include "draw/plot/curves_legend.h"
 #include "helpers/font.h"
+#include "helpers/table_helpers.h"
 #include "stats/curve.h"
 
 namespace synpo {
@@ -138,10 +139,17 @@ TEST(Curves, ASizeWithoutRoomOrAMarkOutsideIsRefused) {
   CurvesStyle style;
   style.width_pt = style.height_pt = 60;
   EXPECT_THROW(lay_out_curves(curve_set(1, 1), style, font()), Error);
+  EXPECT_TRUE(fails_for(kNoRoomForAxes, [&] { lay_out_curves(curve_set(1, 1), style, font()); }));
+  CurvesStyle ranged;
+  ranged.percent = true;
+  ranged.y.low = 200;
+  EXPECT_EQ(thrown([&] { lay_out_curves(curve_set(1, 1), ranged, font()); }),
+            "64 the range leaves nothing between 200 and 100");
   CurvesStyle marked;
   marked.percent = true;
   marked.marks = {{101, "", ""}};
   EXPECT_THROW(lay_out_curves(curve_set(1, 1), marked, font()), Error);
+  EXPECT_TRUE(fails_for(kMarkOutside, [&] { lay_out_curves(curve_set(1, 1), marked, font()); }));
 }
 
 }  // namespace
