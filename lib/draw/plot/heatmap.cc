@@ -46,10 +46,15 @@ std::vector<bool> cells_that_name_parts(const HeatTable& table) {
   return names;
 }
 
+struct ShownRate {
+  double rate;
+  std::string text;
+};
+
 // Without a rate: not evaluated.
-void draw_cell(Canvas& canvas, const Box& box, std::optional<double> rate, const Ramp& ramp,
+void draw_cell(Canvas& canvas, const Box& box, const std::optional<ShownRate>& rate, const Ramp& ramp,
                const HeatmapLayout& layout, const std::string& part = "") {
-  const Rgb ground = rate ? ramp_colour(ramp, *rate) : kPaper;
+  const Rgb ground = rate ? ramp_colour(ramp, rate->rate) : kPaper;
   if (rate)
     canvas.fill(box, ground);
   else if (layout.gap > 0)
@@ -59,7 +64,7 @@ void draw_cell(Canvas& canvas, const Box& box, std::optional<double> rate, const
     canvas.text(box.x + inset, box.y + inset, canvas.font().fitted(part, part_size, box.width - 2 * inset), part_size,
                 ink_on(ground));
   if (rate && layout.value_size > 0)
-    canvas.text(box.x + box.width / 2, box.y + box.height / 2 + (part.empty() ? 0 : layout.pixels(3)), rate_text(*rate),
+    canvas.text(box.x + box.width / 2, box.y + box.height / 2 + (part.empty() ? 0 : layout.pixels(3)), rate->text,
                 layout.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
 }
 
@@ -71,8 +76,10 @@ void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const
   for (int i = 0; i < int(table.cells.size()); ++i) {
     const HeatCell& cell = table.cells[i];
     const Box box = {matrix.x + i % envs * layout.cell, matrix.y + i / envs * layout.cell, side, side};
-    draw_cell(canvas, box, cell.evaluated() ? std::optional(cell.rate()) : std::nullopt,
-              group_ramp(table, cell.group, scheme), layout, named[i] ? table.parts[cell.part].name : "");
+    std::optional<ShownRate> shown;
+    if (cell.evaluated()) shown = {cell.rate(), rate_text(cell.successes, cell.episodes)};
+    draw_cell(canvas, box, shown, group_ramp(table, cell.group, scheme), layout,
+              named[i] ? table.parts[cell.part].name : "");
   }
 }
 
@@ -87,7 +94,7 @@ void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::P
     const int offset = layout.margin_space + int(i) * layout.margin_cell, x = matrix.right() + offset,
               y = matrix.bottom() + offset;
     const auto draw = [&](const Box& box, const HeatMean& line) {
-      if (line.evaluated()) draw_cell(canvas, box, line.mean(), ramp, layout);
+      if (line.evaluated()) draw_cell(canvas, box, ShownRate{line.mean(), rate_text(line)}, ramp, layout);
     };
     for (size_t task = 0; task < margin.tasks.size(); ++task)
       draw({x, matrix.y + int(task) * layout.cell, across, side}, margin.tasks[task]);

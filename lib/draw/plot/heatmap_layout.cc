@@ -60,7 +60,7 @@ std::string caption_of(const HeatFigure& figure) {
 std::string panel_caption(const HeatTable& table) {
   std::string means;
   for (const HeatGroup& group : table.groups)
-    if (group.pairs > 0) means += concat(means.empty() ? "mean " : ", ", group.name, " ", rate_text(group.mean()));
+    if (group.pairs > 0) means += concat(means.empty() ? "mean " : ", ", group.name, " ", rate_text(group));
   return table.caption + (table.caption.empty() || means.empty() ? "" : "\n") + means;
 }
 

@@ -13,7 +13,7 @@ const char kHeading[] = "success rate";
 
 std::string detail_of(const HeatGroup& group) {
   if (group.pairs == 0) return "not evaluated";
-  return concat("mean ", rate_text(group.mean()), ", ", group.pairs, group.pairs == 1 ? " pair" : " pairs");
+  return concat("mean ", rate_text(group), ", ", group.pairs, group.pairs == 1 ? " pair" : " pairs");
 }
 
 int entry_height(const HeatmapLegend::Entry& entry, const HeatmapLayout& layout) {

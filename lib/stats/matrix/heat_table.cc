@@ -49,10 +49,20 @@ std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTabl
   return out;
 }
 
+std::string hundredths_text(double percent, bool some, bool not_all) {
+  int64_t hundredths = std::llround(percent);
+  if (some) hundredths = std::max<int64_t>(hundredths, 1);
+  if (not_all) hundredths = std::min<int64_t>(hundredths, 99);
+  char text[16];
+  std::snprintf(text, sizeof text, "%d.%02d", int(hundredths / 100), int(hundredths % 100));
+  return text;
+}
+
 }  // namespace
 
 void HeatMean::add(const HeatCell& cell) {
   if (!cell.evaluated()) return;
+  each = pairs == 0 || each == cell.episodes ? cell.episodes : -1;
   ++pairs;
   episodes += cell.episodes;
   successes += cell.successes;
@@ -145,15 +155,13 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   return table;
 }
 
-std::string rate_text(int64_t successes, int64_t episodes) { return rate_text(double(successes) / double(episodes)); }
+std::string rate_text(int64_t successes, int64_t episodes) {
+  return hundredths_text(100.0 * double(successes) / double(episodes), successes > 0, successes < episodes);
+}
 
-std::string rate_text(double rate) {
-  int64_t hundredths = std::llround(100.0 * rate);
-  if (rate > 0) hundredths = std::max<int64_t>(hundredths, 1);
-  if (rate < 1) hundredths = std::min<int64_t>(hundredths, 99);
-  char text[16];
-  std::snprintf(text, sizeof text, "%d.%02d", int(hundredths / 100), int(hundredths % 100));
-  return text;
+std::string rate_text(const HeatMean& mean) {
+  if (mean.each >= 0) return rate_text(mean.successes, mean.episodes);
+  return hundredths_text(100.0 * mean.mean(), mean.successes > 0, mean.successes < mean.episodes);
 }
 
 }  // namespace synpo

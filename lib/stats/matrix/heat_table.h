@@ -26,9 +26,11 @@ struct HeatCell {
 struct HeatMean {
   int64_t pairs = 0, episodes = 0, successes = 0;  // of the pairs evaluated
   double rates = 0;                                // their sum
+  int64_t each = 0;                                // episodes of every pair; -1 where they differ
   void add(const HeatCell& cell);                  // nothing where the cell was not evaluated
   bool evaluated() const { return pairs > 0; }
-  double mean() const { return rates / double(pairs); }
+  // Of counts where they give it, so that lines of equal counts are equal.
+  double mean() const { return each >= 0 ? rate() : rates / double(pairs); }
   double rate() const { return double(successes) / double(episodes); }  // over all episodes together
 };
 
@@ -95,6 +97,6 @@ std::vector<HeatMargin> margins_of(const HeatTable& table);
 
 // "0.83"; 1.00 and 0.00 only where all or none succeeded.
 std::string rate_text(int64_t successes, int64_t episodes);
-std::string rate_text(double rate);
+std::string rate_text(const HeatMean& mean);
 
 }  // namespace synpo

@@ -34,5 +34,17 @@ TEST(MeanCurve, OneRunIsItselfAndHasNoBand) {
   EXPECT_THROW(mean_curve({{{1, 2}, {0, 0}}, {{3, 4}, {0, 0}}}, Band::kSd), Error);
 }
 
+// Two runs at 90 and 100 have the sd 7.07: the band ends where no rate is.
+TEST(MeanCurve, BandsStayWithinTheirBounds) {
+  const std::vector<Curve> runs = {{{1, 2}, {100, 0}}, {{1, 2}, {90, 10}}};
+  const MeanCurve free = mean_curve(runs, Band::kSd), bound = mean_curve(runs, Band::kSd, {0, 100});
+  EXPECT_NEAR(free.high[0], 95 + std::sqrt(50.0), 1e-12);
+  EXPECT_NEAR(free.low[1], 5 - std::sqrt(50.0), 1e-12);
+  EXPECT_EQ(bound.high[0], 100);
+  EXPECT_NEAR(bound.low[0], 95 - std::sqrt(50.0), 1e-12);
+  EXPECT_EQ(bound.low[1], 0);
+  EXPECT_EQ(bound.mean, free.mean);
+}
+
 }  // namespace
 }  // namespace synpo

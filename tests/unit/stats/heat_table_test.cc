@@ -200,7 +200,8 @@ TEST(Margins, EveryPairCountsAlikeWhateverItsEpisodes) {
   EXPECT_DOUBLE_EQ(margins_of(one)[0].tasks[0].mean(), 0.75);
   EXPECT_DOUBLE_EQ(one.groups[0].mean(), 0.75);
   EXPECT_DOUBLE_EQ(one.groups[0].rate(), 0.55);
-  EXPECT_EQ(rate_text(margins_of(one)[0].envs[0].mean()), "1.00");
+  EXPECT_EQ(rate_text(margins_of(one)[0].envs[0]), "1.00");
+  EXPECT_EQ(rate_text(margins_of(one)[0].tasks[0]), "0.75");
 }
 
 }  // namespace

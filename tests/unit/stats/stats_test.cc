@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "helpers/table_helpers.h"
-#include "stats/curve.h"
 #include "stats/interval.h"
 #include "stats/matrix/merge.h"
 #include "stats/matrix/runs.h"
@@ -47,18 +46,6 @@ TEST(MeanSd, DividesByOneLess) {
   EXPECT_EQ(mean_sd({3}).mean, 3);
   EXPECT_TRUE(std::isnan(mean_sd({3}).sd));
   EXPECT_TRUE(std::isnan(mean_sd({}).mean));
-}
-
-// Two runs at 90 and 100 have the sd 7.07: the band ends where no rate is.
-TEST(MeanCurve, BandsStayWithinTheirBounds) {
-  const std::vector<Curve> runs = {{{1, 2}, {100, 0}}, {{1, 2}, {90, 10}}};
-  const MeanCurve free = mean_curve(runs, Band::kSd), bound = mean_curve(runs, Band::kSd, {0, 100});
-  EXPECT_NEAR(free.high[0], 95 + std::sqrt(50.0), 1e-12);
-  EXPECT_NEAR(free.low[1], 5 - std::sqrt(50.0), 1e-12);
-  EXPECT_EQ(bound.high[0], 100);
-  EXPECT_NEAR(bound.low[0], 95 - std::sqrt(50.0), 1e-12);
-  EXPECT_EQ(bound.low[1], 0);
-  EXPECT_EQ(bound.mean, free.mean);
 }
 
 MatrixRow row(const std::string& run, const std::string& env, bool seen, int64_t first, int64_t episodes,
