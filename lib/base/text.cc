@@ -1,6 +1,10 @@
 #include "base/text.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
+
+#include "base/error.h"
 
 namespace synpo {
 
@@ -29,6 +33,18 @@ size_t first_bad_byte(std::string_view text) {
     i += length;
   }
   return std::string_view::npos;
+}
+
+std::string fault_of_name(std::string_view name) {
+  if (name.empty()) return "found an empty name, expected one of 1 to " + std::to_string(kLongestName) + " bytes";
+  if (name.size() > kLongestName)
+    return concat("found a name of ", name.size(), " bytes, expected at most ", kLongestName);
+  const size_t at = std::min(first_bad_byte(name), name.find('\t'));
+  if (at == std::string_view::npos) return "";
+  char byte[8];
+  std::snprintf(byte, sizeof byte, "\\x%02x", uint8_t(name[at]));
+  return concat("found ", uint8_t(name[at]) < 0x80 ? "a control character" : "invalid UTF-8", " at byte ", at + 1,
+                " of the name (", byte, "), expected UTF-8 text");
 }
 
 bool natural_less(const std::string& a, const std::string& b) {

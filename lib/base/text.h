@@ -16,6 +16,11 @@ size_t utf8_length(std::string_view text, size_t at);
 // when there is none.
 size_t first_bad_byte(std::string_view text);
 
+// What keeps `name` from standing wherever environments, tasks and methods are named, which is 1 to kLongestName bytes
+// of UTF-8 without control characters: "found ..., expected ..."; empty when nothing does.
+constexpr size_t kLongestName = 255;
+std::string fault_of_name(std::string_view name);
+
 // True when `a` comes before `b` with runs of digits compared as numbers: map2 before map10.
 bool natural_less(const std::string& a, const std::string& b);
 

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -27,6 +28,12 @@ Json structure(const SafeTensors& file, const std::string& key) {
   const Json value = Json::parse(file.meta(key), nullptr, false);
   if (value.is_discarded()) fail(Exit::kData, "metadata '", key, "': no JSON");
   return value;
+}
+
+// A name, fit to be written again.
+std::string checked_name(const std::string& key, std::string name) {
+  if (const std::string fault = fault_of_name(name); !fault.empty()) fail(Exit::kData, "metadata '", key, "': ", fault);
+  return name;
 }
 
 OrderedJson to_json(const Checkpoint& c) {
@@ -82,8 +89,8 @@ Checkpoint read_checkpoint(Input& input) {
     const int64_t version = whole(file, "version");
     if (version < 1 || version > kCheckpointVersion)
       fail(Exit::kData, "version ", version, ", this build reads 1 to ", kCheckpointVersion);
-    c.method = file.meta("method");
-    c.world = file.meta("world");
+    c.method = checked_name("method", file.meta("method"));
+    c.world = checked_name("world", file.meta("world"));
     c.rules = int(std::min<int64_t>(whole(file, "rules"), INT32_MAX));
     if (file.metadata.count("extractor")) c.extractor = file.meta("extractor");
     c.window = int(std::min<int64_t>(whole(file, "window"), 1000));
@@ -94,14 +101,17 @@ Checkpoint read_checkpoint(Input& input) {
     c.seed = uint64_t(whole(file, "seed"));
     c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
     c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();
+    for (const std::string& task : c.tasks) checked_name("tasks", task);
+    for (const auto& [env, task] : c.seen)
+      for (const std::string& name : {env, task}) checked_name("seen", name);
     const Json shape = structure(file, "shape");
     for (const auto& [name, size] : shape.items())
       if (!size.is_number_integer()) fail(Exit::kData, "metadata 'shape': ", quoted(name), " is no whole number");
     c.shape = shape.get<std::map<std::string, int64_t>>();
     c.options = structure(file, "options").get<std::map<std::string, std::string>>();
     for (const Json& env : structure(file, "envs"))
-      c.envs.push_back({env.at("name").get<std::string>(), parse_hex(env.at("hash").get<std::string>()),
-                        env.at("content").get<std::string>()});
+      c.envs.push_back({checked_name("envs", env.at("name").get<std::string>()),
+                        parse_hex(env.at("hash").get<std::string>()), env.at("content").get<std::string>()});
   } catch (const Error& error) {
     fail(error.code(), "cannot read ", input.name(), ": ", error.what());
   } catch (const Json::exception& error) {

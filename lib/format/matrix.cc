@@ -60,15 +60,13 @@ class RowReader {
     text(kRun, row.run);
     text(kWorld, row.world);
     whole(kWindow, row.window, 0, kMatrixCount);
-    text(kMethod, row.method);
+    if (says(kMethod)) row.method = reader_.name(at_[kMethod], "the name of a method");
     seed(kSeed, row.seed);
     whole(kUpdates, row.updates, 0, kMaxWhole);
     seed(kEvalSeed, row.eval_seed);
     whole(kFirst, row.first_episode, 0, kMatrixCount);
-    text(kEnv, row.env);
-    text(kTask, row.task);
-    if (row.env.empty()) reader_.bad(at_[kEnv], "the name of an environment");
-    if (row.task.empty()) reader_.bad(at_[kTask], "the name of a task");
+    row.env = reader_.name(at_[kEnv], "the name of an environment");
+    row.task = reader_.name(at_[kTask], "the name of a task");
     if (at_[kSeen] >= 0) row.seen = reader_.integer(at_[kSeen], 0, 1) == 1;
     if (at_[kNew] >= 0) row.is_new = reader_.integer(at_[kNew], 0, 1) == 1;
     if (row.seen && row.is_new) reader_.bad(at_[kNew], "0 of a pair that is seen");

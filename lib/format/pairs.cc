@@ -22,10 +22,8 @@ std::vector<PairRow> read_pairs(Input& input) {
   while (reader.next()) {
     if (rows.size() == kMaxRows) input.bad_line(concat("more than ", kMaxRows, " rows"));
     PairRow row;
-    row.env = reader.field(env);
-    row.task = reader.field(task);
-    if (row.env.empty()) reader.bad(env, "the name of an environment");
-    if (row.task.empty()) reader.bad(task, "the name of a task");
+    row.env = reader.name(env, "the name of an environment");
+    row.task = reader.name(task, "the name of a task");
     if (seen >= 0) row.seen = reader.integer(seen, 0, 1) == 1;
     if (part >= 0) {
       row.part = reader.field(part);

@@ -73,7 +73,7 @@ std::vector<int32_t> integers(const SafeTensors& file, const std::string& name, 
 
 std::string name_in(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
-  if (text.empty() || first_bad_byte(text) != std::string::npos || text.find('\t') != std::string::npos)
+  if (!fault_of_name(text).empty())
     fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a name");
   return text;
 }

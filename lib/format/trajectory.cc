@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -29,6 +30,13 @@ std::string text(const Json& object, const char* field) {
   const Json& value = need(object, field);
   if (!value.is_string()) wrong(field, value, "a string");
   return value.get<std::string>();
+}
+
+// A name, fit to be written again.
+std::string name(const Json& object, const char* field) {
+  std::string value = text(object, field);
+  if (const std::string fault = fault_of_name(value); !fault.empty()) fail(Exit::kData, "field '", field, "': ", fault);
+  return value;
 }
 
 int64_t whole(const char* field, const Json& value, int64_t low, int64_t high) {
@@ -104,10 +112,10 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
   if (version < 1 || version > kTrajectoryVersion)
     fail(Exit::kData, "version ", version, ", this build reads 1 to ", kTrajectoryVersion);
   Trajectory t;
-  t.world = text(object, "world");
+  t.world = name(object, "world");
   t.rules = int(whole("rules", need(object, "rules"), 0, INT32_MAX));
-  t.env = text(object, "env");
-  t.task = text(object, "task");
+  t.env = name(object, "env");
+  t.task = name(object, "task");
   t.env_hash = parse_hex(text(object, "env_hash"));
   t.window = int(whole("window", need(object, "window"), 0, 1000));
   const Json& seed = need(object, "seed");

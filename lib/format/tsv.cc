@@ -84,6 +84,13 @@ bool TsvReader::row(std::vector<std::string>& fields) {
   return true;
 }
 
+const std::string& TsvReader::name(int column, const std::string& expected) const {
+  const std::string& found = field(column);
+  if (found.empty()) bad(column, expected);
+  if (found.size() > kLongestName) bad(column, concat(expected, ", of at most ", kLongestName, " bytes"));
+  return found;
+}
+
 int64_t TsvReader::integer(int column, int64_t low, int64_t high) const {
   int64_t value = 0;
   if (parse_whole(fields_[column], value) && value >= low && value <= high) return value;

@@ -26,6 +26,8 @@ class TsvReader {
   // The next row; false at the end. A row with another number of fields than the header is kData.
   bool next();
   const std::string& field(int column) const { return fields_[column]; }
+  // The field where a name stands: not empty, and not too long (base/text.h). `expected` says whose name it is.
+  const std::string& name(int column, const std::string& expected) const;
   // The field as a whole number in [low, high], or as a finite real number.
   int64_t integer(int column, int64_t low, int64_t high) const;
   double real(int column) const;

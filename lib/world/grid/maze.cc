@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 
 #include "base/error.h"
@@ -106,21 +107,26 @@ std::vector<Maze> open_mazes(const std::string& world) {
 }
 
 std::vector<Maze> load_mazes(const std::string& folder) {
+  constexpr std::string_view kEnding = ".txt";
   namespace fs = std::filesystem;
   std::error_code error;
   std::vector<std::string> names;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    if (name.starts_with("map") && name.ends_with(".txt")) names.push_back(name);
+    if (name.ends_with(kEnding) && !name.starts_with('.')) names.push_back(name);
   }
   if (error) fail(Exit::kNoInput, "cannot read the folder '", folder, "': ", error.message());
-  if (names.empty()) fail(Exit::kNoInput, "no map*.txt in the folder '", folder, "'");
+  if (names.empty()) fail(Exit::kNoInput, "no *", kEnding, " in the folder '", folder, "'");
   std::sort(names.begin(), names.end(), natural_less);
+  const auto stem = [&](const std::string& name) { return name.substr(0, name.size() - kEnding.size()); };
+  for (const std::string& name : names)
+    if (const std::string fault = fault_of_name(stem(name)); !fault.empty())
+      fail(Exit::kData, quoted(name), " in the folder '", folder, "': ", fault);
   std::vector<Maze> mazes;
   for (const std::string& name : names) {
     const std::string path = (fs::path(folder) / name).string();
     Input input(path);
-    mazes.push_back(parse_maze(name.substr(0, name.size() - 4), input.rest(1 << 16), path));
+    mazes.push_back(parse_maze(stem(name), input.rest(1 << 16), path));
   }
   return mazes;
 }

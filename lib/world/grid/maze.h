@@ -29,7 +29,8 @@ Maze parse_maze(const std::string& name, const std::string& text, const std::str
 // map1 to map20, built into the library.
 const std::vector<Maze>& builtin_mazes();
 
-// Every map*.txt of a folder in natural order (map2 before map10). Throws kNoInput when there is none.
+// Every *.txt of a folder in natural order (map2 before map10), but for names that begin with a dot. Throws kNoInput
+// when there is none, kData, before any file is read, for one whose stem cannot be a name (base/text.h).
 std::vector<Maze> load_mazes(const std::string& folder);
 
 // The mazes of a world by its name on the command line: "gridworld" or "gridworld:DIR". Throws kUsage for another.

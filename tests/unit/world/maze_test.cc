@@ -98,20 +98,30 @@ TEST(Maze, RefusesOtherTexts) {
 
 TEST(Maze, FoldersAreReadInNaturalOrder) {
   const TemporaryFolder folder;
-  for (const char* name : {"map10.txt", "map2.txt", "map1.txt", "notes.txt", "map3.txt~"}) folder.file(name, room());
+  for (const char* name : {"map10.txt", "map2.txt", "map1.txt", "hall.txt", "notes.md", "map3.txt~", ".map4.txt"})
+    folder.file(name, room());
   std::string names;
   for (const Maze& maze : load_mazes(folder.path())) names += maze.name + " ";
-  EXPECT_EQ(names, "map1 map2 map10 ");
-  EXPECT_EQ(GridSet::open("gridworld:" + folder.path()).envs(), 3);
+  EXPECT_EQ(names, "hall map1 map2 map10 ");
+  EXPECT_EQ(GridSet::open("gridworld:" + folder.path()).envs(), 4);
   folder.file("map4.txt", "#\n");
   EXPECT_EQ(thrown([&] { load_mazes(folder.path()); }),
             "65 " + folder.file("map4.txt") + ": found 1 lines, expected a maze of 16 lines of 16 characters");
 }
 
+TEST(Maze, AFileThatCannotBeANameIsRefusedBeforeAnyIsRead) {
+  const TemporaryFolder folder;
+  folder.file("a.txt", "#\n");
+  folder.file("map\xe9.txt", room());
+  EXPECT_EQ(thrown([&] { load_mazes(folder.path()); }),
+            "65 'map\\xe9.txt' in the folder '" + folder.path() +
+                "': found invalid UTF-8 at byte 4 of the name (\\xe9), expected UTF-8 text");
+}
+
 TEST(Maze, AFolderWithoutMapsIsMissingInput) {
   const TemporaryFolder folder;
-  folder.file("notes.txt", room());
-  EXPECT_EQ(thrown([&] { load_mazes(folder.path()); }), "66 no map*.txt in the folder '" + folder.path() + "'");
+  folder.file("notes.md", room());
+  EXPECT_EQ(thrown([&] { load_mazes(folder.path()); }), "66 no *.txt in the folder '" + folder.path() + "'");
   EXPECT_EQ(thrown([&] { load_mazes(folder.file("none")); }),
             "66 cannot read the folder '" + folder.file("none") + "': No such file or directory");
 }
