@@ -6,6 +6,7 @@
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/files/side_output.h"
 #include "base/hash.h"
 #include "base/signals.h"
 #include "format/matrix.h"
@@ -66,8 +67,9 @@ int body(int argc, char** argv) {
   const bool records_to_stdout = record_path == "-";
   if (records_to_stdout && output_path == "-" && options.given("output"))
     fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
-  std::unique_ptr<Output> record, output;
-  if (!record_path.empty()) record = std::make_unique<Output>(record_path);
+  std::unique_ptr<SideOutput> record;
+  std::unique_ptr<Output> output;
+  if (!record_path.empty()) record = std::make_unique<SideOutput>(record_path);
   if (!records_to_stdout || output_path != "-") output = std::make_unique<Output>(output_path);
 
   catch_stop_signals();
@@ -81,7 +83,11 @@ int body(int argc, char** argv) {
   model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
   Progress progress("synpo-eval", "episodes", episodes.size(), quiet);
   EpisodeSink sink;
-  if (record) sink = [&](const Trajectory& trajectory) { record->write(format_trajectory(trajectory) + "\n"); };
+  if (record)
+    sink = [&](const Trajectory& trajectory) {
+      record->write(format_trajectory(trajectory) + "\n");
+      if (!output) record->check();
+    };
   const std::vector<Outcomes> results = evaluate(parallel, *model.policy, world, pairs, episodes,
                                                  {uint64_t(seed), model.window, temperature}, sink, [&](size_t done) {
                                                    progress.update(done);
@@ -89,7 +95,10 @@ int body(int argc, char** argv) {
                                                  });
   progress.finish();
   if (record) record->finish();
-  if (!output) return 0;
+  if (!output) {
+    record->check();
+    return 0;
+  }
 
   Matrix matrix;
   const std::string run = hex(checkpoint.weights_hash());
@@ -124,6 +133,7 @@ int body(int argc, char** argv) {
   }
   write_matrix(*output, matrix);
   output->finish();
+  if (record) record->check();
   if (new_pairs > 0 && !quiet)
     std::fprintf(
         stderr,
