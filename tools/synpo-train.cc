@@ -104,7 +104,7 @@ int body(int argc, char** argv) {
   const std::string methods = alternatives(method_names());
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
-  options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, INT64_MAX)
+  options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, kUnknown - 1)
       .text(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones",
             s.time)
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)",

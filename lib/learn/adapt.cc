@@ -120,8 +120,11 @@ std::vector<Adaptation::Span> Adaptation::learned() const {
 }
 
 void Adaptation::add(const Episode& episode) {
-  if (!model_.is_seen(episode.pair)) model_.seen.push_back(episode.pair);
   const size_t size = world_.observation_size();
+  if ((env_.size() + episode.actions.size()) * size > options_.most_bytes)
+    fail(Exit::kData, "the demonstrations have more than ", options_.most_bytes / size,
+         " steps, as many as there is room for: give fewer of them");
+  if (!model_.is_seen(episode.pair)) model_.seen.push_back(episode.pair);
   RunningEpisode running;
   running.start(episode.pair, episode.start);
   for (size_t t = 0; t < episode.actions.size(); ++t) {

@@ -31,6 +31,7 @@ struct AdaptOptions {
   // For what the method's EmbeddingLoss keeps. Where it is not enough, updates go through the whole head, which takes
   // ten times as long.
   size_t memory_bytes = size_t(2) << 30;
+  size_t most_bytes = size_t(8) << 30;  // of what the agent sees in demonstrations, all of which are kept
 };
 
 // The same model for a world of more environments: parameters are carried over by environment and task; embeddings of
@@ -45,7 +46,7 @@ class Adaptation {
   // `model` as widen() gives it. New are environments and tasks that none of its seen pairs has.
   Adaptation(const World& world, Parallel& parallel, Model model, const AdaptOptions& options, uint64_t seed);
 
-  // Takes a demonstration in. Its pair counts as seen from here on.
+  // Takes a demonstration in. Its pair counts as seen from here on. Throws kData where there is no more room.
   void add(const Episode& episode);
   size_t demonstrations() const { return first_.size() - 1; }
   int new_envs() const;

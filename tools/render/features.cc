@@ -49,6 +49,10 @@ int features(int argc, char** argv) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) fail(Exit::kCantCreate, "cannot create the folder ", quoted(folder), ": ", error.message());
+  const auto path_of = [&](const std::string& name) {
+    return (std::filesystem::path(folder) / (name + kSceneEnding)).string();
+  };
+  for (const std::string& name : chosen) Output probe(path_of(name));
   Parallel parallel{int(threads)};
   Progress progress("synpo-render", "views", 0, quiet);
   for (size_t i = 0; i < chosen.size(); ++i) {
@@ -60,7 +64,7 @@ int features(int argc, char** argv) {
                      progress.update(uint64_t(total * i + done), concat(chosen[i], ", ", i + 1, " of ", chosen.size()));
                      stop_if_asked();
                    });
-    write_file((std::filesystem::path(folder) / (chosen[i] + kSceneEnding)).string(), format_scene(scene));
+    write_file(path_of(chosen[i]), format_scene(scene));
   }
   progress.finish();
   return 0;

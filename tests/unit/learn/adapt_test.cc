@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "helpers/policy_fixture.h"
+#include "helpers/table_helpers.h"
 #include "helpers/targets.h"
 
 namespace synpo {
@@ -151,6 +152,20 @@ TEST(Adapt, AWiderWorldKeepsWhatItKnows) {
   EXPECT_EQ(tensor(wide, "theta"), tensor(small, "theta"));
   EXPECT_TRUE(wide.is_seen({many.env_index(few.maze(1).name), 2}));
   EXPECT_THROW(widen(small, few, first_mazes(1), 1, 5), Error);
+}
+
+TEST(Adapt, DemonstrationsThatThereIsNoRoomForAreRefused) {
+  const GridSet world = first_mazes(4);
+  Parallel parallel(1);
+  const Episode episode = demonstration(world, {3, 0});
+  AdaptOptions options;
+  options.most_bytes = 2 * episode.actions.size() * world.observation_size();
+  Adaptation adaptation(world, parallel, widen(trained_on(world, {{0, 0}}), world, world, 1, 5), options, 5);
+  for (int i = 0; i < 2; ++i) adaptation.add(episode);
+  EXPECT_EQ(thrown([&] { adaptation.add(episode); }),
+            concat("65 the demonstrations have more than ", 2 * episode.actions.size(),
+                   " steps, as many as there is room for: give fewer of them"));
+  EXPECT_EQ(adaptation.demonstrations(), 2u);
 }
 
 TEST(Adapt, ThreadsDoNotShow) {

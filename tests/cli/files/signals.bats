@@ -1,0 +1,103 @@
+load ../common
+
+setup_file() {
+    make_inputs
+    synpo-train "${TINY[@]}" -n 12 -p pairs.tsv <e.jsonl >full.ckpt
+}
+
+setup() {
+    mkdir "$BATS_TEST_TMPDIR/work"
+    cd "$BATS_TEST_TMPDIR/work" || exit
+    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,full.ckpt,m.tsv} .
+    mkfifo stream
+}
+
+teardown() {
+    [ -z "${pid-}" ] || kill -9 "$pid" 2>/dev/null || true
+}
+
+# stops SIGNAL CODE LINES COMMAND...: the command has the first LINES lines of e.jsonl and waits for more; the signal ends it with CODE.
+stops() {
+    local signal=$1 code=$2 lines=$3 status=0 i
+    shift 3
+    env --default-signal=HUP,INT "$@" <stream >stdout 2>err 3>&- &
+    pid=$!
+    exec 9>stream
+    head -n "$lines" e.jsonl >&9
+    # It waits for the stream, asleep and not to be woken by anything else.
+    for ((i = 0; i < 400; ++i)); do
+        grep -q 'poll' "/proc/$pid/wchan" 2>/dev/null && break
+        [ "$i" -gt 60 ] && grep -q '^State:.S' "/proc/$pid/status" && break
+        sleep 0.05
+    done
+    kill -"$signal" "$pid"
+    for ((i = 0; i < 200; ++i)); do
+        kill -0 "$pid" 2>/dev/null || break
+        sleep 0.05
+    done
+    kill -0 "$pid" 2>/dev/null && complain "$*: it goes on after SIG$signal"
+    wait "$pid" || status=$?
+    pid=
+    exec 9>&-
+    [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat err)"
+    [ -z "$(find . -name '*.part')" ]
+}
+
+@test "signals are heard while a stream is read: before the first update, after the last, over lines that were read before" {
+    for signal in "TERM 143" "INT 130" "HUP 129"; do
+        # shellcheck disable=SC2086
+        stops $signal 5 synpo-train "${TINY[@]}" -n 3
+        [ ! -s stdout ]
+    done
+    stops TERM 143 40 synpo-train "${TINY[@]}" -n 3 --expect 60 --save saved
+    [ ! -s stdout ]
+    [ "$(described saved .updates)" -eq 3 ]
+    stops TERM 143 5 synpo-train -q --resume full.ckpt -n 20 -o out
+    [ ! -e out ]
+    stops TERM 143 5 synpo-finetune adapt -q -n 3 -c a.ckpt -o out
+    [ ! -e out ]
+    stops TERM 143 5 synpo-gen-expert --relabel
+}
+
+@test "signals are heard where a stream never ends and never waits" {
+    for command in "synpo-finetune adapt -q -n 3 -c a.ckpt" "synpo-train ${TINY[*]} -n 3 --fill 1e7" "synpo-train ${TINY[*]} -n 3 --expect 1000000000 --save saved"; do
+        # shellcheck disable=SC2086
+        env --default-signal=INT $command -o out < <(while cat e.jsonl 2>/dev/null; do :; done) 2>err 3>&- &
+        pid=$!
+        sleep 2
+        kill -INT "$pid"
+        status=0
+        wait "$pid" || status=$?
+        pid=
+        [ "$status" -eq 130 ] || complain "$command: exit code $status: $(cat err)"
+        [ ! -e out ]
+    done
+    [ "$(described saved .updates)" -eq 3 ]
+}
+
+@test "signals are heard while a pipe is opened: to read it, to write it" {
+    mkfifo pipe
+    for command in "synpo-train ${TINY[*]} -n 3 -p pipe" "synpo-train ${TINY[*]} -n 3 -o pipe" "synpo-train ${TINY[*]} -n 3 --log pipe" \
+        "synpo-finetune adapt -q -c pipe" "synpo-gen-expert -n 3 -o pipe"; do
+        # shellcheck disable=SC2086
+        stops TERM 143 0 $command
+    done
+}
+
+@test "a pipe is read and written whole, whoever opens it first" {
+    mkfifo pipe
+    (sleep 0.3; cat pairs.tsv >pipe) &
+    synpo-gen-expert -n 20 -p pipe >got
+    synpo-gen-expert -n 20 -p pairs.tsv | cmp got
+    (sleep 0.3; cat pipe >got) &
+    synpo-gen-expert -n 20 -p pairs.tsv -o pipe
+    wait
+    synpo-gen-expert -n 20 -p pairs.tsv | cmp got
+}
+
+@test "-n with the largest number is a number, not no number" {
+    fails 64 synpo-train "${TINY[@]}" -n 9223372036854775807 <e.jsonl
+    says "expected a whole number from 1 to 9223372036854775806"
+    stops TERM 143 21 synpo-train "${TINY[@]}" -n 9223372036854775806 --save saved
+    synpo-train -q --resume saved -n 3 <e.jsonl >/dev/null
+}
