@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/files/io.h"
 #include "base/signals.h"
+#include "base/text.h"
 #include "play/episode.h"
 #include "play/world_factory.h"
 
@@ -45,7 +46,7 @@ int gen_expert(int argc, char** argv) {
             0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", window, 0, 16)
-      .text('w', "world", "WORLD", kWorldNames, world_name)
+      .text('w', "world", "WORLD", alternatives(world_names()).c_str(), world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .flag('q', "quiet", "no progress", quiet);
   options.parse(argc, argv);

@@ -110,7 +110,7 @@ int body(int argc, char** argv) {
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)",
             s.pairs)
       .choice('m', "method", "NAME", methods.c_str(), s.method, method_names())
-      .text('w', "world", "WORLD", kWorldNames, s.world)
+      .text('w', "world", "WORLD", alternatives(world_names()).c_str(), s.world)
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
       .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)
       .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX);

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "play/kitchen_scenes.h"
 #include "world/grid/grid_set.h"
 #include "world/kitchen/kitchen_set.h"
@@ -41,24 +42,65 @@ std::unique_ptr<World> choose_scenes(const std::vector<Environment>& environment
   return std::make_unique<SceneKitchens>(*scenes, chosen);
 }
 
-}  // namespace
-
-std::unique_ptr<World> open_world(const std::string& name) {
+std::unique_ptr<World> open_kitchens(const std::string& name) {
   static const std::string scenes = "kitchen:";
-  if (name == "kitchen") return std::make_unique<KitchenSet>();
   if (name.starts_with(scenes)) return std::make_unique<SceneKitchens>(read_kitchens(name.substr(scenes.size())));
-  if (name == "gridworld" || name.starts_with("gridworld:")) return std::make_unique<GridSet>(open_mazes(name));
-  fail(Exit::kUsage, "unknown world ", quoted(name), ", expected ", kWorldNames);
+  return std::make_unique<KitchenSet>();
 }
 
-std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments,
-                                     const World* source) {
-  if (name == "gridworld") return std::make_unique<GridSet>(parse_all(environments, parse_maze));
-  if (name != "kitchen") fail(Exit::kData, "world ", quoted(name), ", this build has gridworld and kitchen");
+std::unique_ptr<World> restore_kitchens(const std::vector<Environment>& environments, const World* source) {
   const bool in_files =
       std::any_of(environments.begin(), environments.end(), [](const Environment& env) { return env.content.empty(); });
   if (in_files) return choose_scenes(environments, source);
   return std::make_unique<KitchenSet>(parse_all(environments, parse_kitchen));
+}
+
+std::unique_ptr<World> open_grid(const std::string& name) { return std::make_unique<GridSet>(open_mazes(name)); }
+
+std::unique_ptr<World> restore_grid(const std::vector<Environment>& environments, const World*) {
+  return std::make_unique<GridSet>(parse_all(environments, parse_maze));
+}
+
+struct KindOfWorld {
+  const char* name;  // World::name()
+  bool has_folders;  // there is NAME:DIR too
+  // By the name on the command line.
+  std::unique_ptr<World> (*open)(const std::string& name);
+  // As restore_world().
+  std::unique_ptr<World> (*restore)(const std::vector<Environment>& environments, const World* source);
+};
+
+constexpr KindOfWorld kWorlds[] = {{"gridworld", true, open_grid, restore_grid},
+                                   {"kitchen", true, open_kitchens, restore_kitchens}};
+
+}  // namespace
+
+const std::vector<std::string>& world_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const KindOfWorld& world : kWorlds) {
+      all.push_back(world.name);
+      if (world.has_folders) all.push_back(concat(world.name, ":DIR"));
+    }
+    return all;
+  }();
+  return names;
+}
+
+std::unique_ptr<World> open_world(const std::string& name) {
+  for (const KindOfWorld& world : kWorlds)
+    if (name == world.name || (world.has_folders && name.starts_with(concat(world.name, ":")))) return world.open(name);
+  fail(Exit::kUsage, "unknown world ", quoted(name), ", expected ", alternatives(world_names()));
+}
+
+std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments,
+                                     const World* source) {
+  std::string known;
+  for (const KindOfWorld& world : kWorlds) {
+    if (name == world.name) return world.restore(environments, source);
+    known += concat(known.empty() ? "" : " and ", world.name);
+  }
+  fail(Exit::kData, "world ", quoted(name), ", this build has ", known);
 }
 
 }  // namespace synpo

@@ -1,4 +1,4 @@
-// The worlds by name.
+// The worlds by name. A new world has a row in world_factory.cc.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,13 +9,12 @@
 
 namespace synpo {
 
-constexpr char kWorldNames[] = "gridworld, gridworld:DIR, kitchen or kitchen:DIR";
-
 // Environments that lie in files of their own are asked for without a source, or with one that has no files.
 constexpr Cause kNoSource{"no source of environments"}, kOtherSource{"a source without files"};
 
-// The world of one of these names on the command line. Throws kUsage for another, kData and kNoInput
-// for what is wrong with its files.
+// As the command line has them; NAME:DIR reads the environments from the files of a folder.
+const std::vector<std::string>& world_names();
+// The world of one of these names. Throws kUsage for another, kData and kNoInput for what is wrong with its files.
 std::unique_ptr<World> open_world(const std::string& name);
 // A world by its name() from environments() as a file has kept them; those without content are taken from `source` by
 // their names. Throws kData where content is malformed, or where hashes differ, and kUsage (kNoSource,

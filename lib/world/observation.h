@@ -25,6 +25,8 @@ struct ObservationSpec {
   int view = 0, objects = 0;
   static constexpr int kObjectFloats = 16;
 
+  static constexpr int kChannels = 3 * kHistory;  // of pictures, once their colours are looked up
+
   size_t bytes() const {
     if (sight == Sight::kPictures) return size_t(side) * side * kHistory;
     return (size_t(kHistory) * view + kObjectFloats) * sizeof(float);

@@ -262,8 +262,9 @@ double step_multiply_adds() {
   const SynPo<float> policy(shape);
   const double recognisers = 2.0 * (shape.basis * shape.hidden + shape.hidden * shape.embedding) +
                              shape.embedding * (shape.envs + shape.tasks);
-  const double first_block = Conv<float>(kGridSide, kViewChannels, shape.channels[0], 3, 2).multiply_adds() +
-                             Conv<float>(kGridSide, kViewChannels, shape.channels[0], 1, 2).multiply_adds();
+  const double first_block =
+      Conv<float>(kGridSide, ObservationSpec::kChannels, shape.channels[0], 3, 2).multiply_adds() +
+      Conv<float>(kGridSide, ObservationSpec::kChannels, shape.channels[0], 1, 2).multiply_adds();
   return 3.0 * (policy.encoder().multiply_adds() + recognisers + shape.feature * shape.basis) - first_block;
 }
 

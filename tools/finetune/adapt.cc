@@ -5,6 +5,7 @@
 #include "base/cli/progress.h"
 #include "base/error.h"
 #include "base/signals.h"
+#include "base/text.h"
 #include "finetune/finetune.h"
 #include "learn/adapt.h"
 #include "play/stream.h"
@@ -59,7 +60,7 @@ int adapt(int argc, char** argv) {
       "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
       "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
-      .text('w', "world", "WORLD", concat("new environments too: ", kWorldNames).c_str(), world_name)
+      .text('w', "world", "WORLD", concat("new environments too: ", alternatives(world_names())).c_str(), world_name)
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
       .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", trajectories, 1, 100000)
       .call(0, "train", "WHAT", "embeddings, and behind it +heads, +coefficients, or both [embeddings]",

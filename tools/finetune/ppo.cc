@@ -8,6 +8,7 @@
 #include "base/clock.h"
 #include "base/error.h"
 #include "base/signals.h"
+#include "base/text.h"
 #include "finetune/finetune.h"
 #include "format/run_log.h"
 #include "learn/long_run.h"
@@ -82,8 +83,10 @@ void add_options(Options& options, Settings& s, PpoOptions& ppo) {
       .text(0, "resume", "FILE",
             "go on from a checkpoint of --save, to the same bits; the other options must be the same", s.resume)
       .text(0, "init", "random", "from scratch: a network of random weights, for -w and -m", s.init)
-      .text('w', "world", "WORLD",
-            concat("with --init: ", kWorldNames, "; else the folder of the checkpoint's scenes").c_str(), s.world)
+      .text(
+          'w', "world", "WORLD",
+          concat("with --init: ", alternatives(world_names()), "; else the folder of the checkpoint's scenes").c_str(),
+          s.world)
       .text('m', "method", "NAME", "with --init: the method", s.method);
   s.add_to(options);
   options.section("PPO")

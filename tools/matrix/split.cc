@@ -34,6 +34,8 @@ int matrix_split(int argc, char** argv) {
     if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
     plan.singles.emplace_back(names[0], names[1]);
   };
+  std::string worlds;
+  for (const std::string& name : world_names()) worlds += name + ", ";
   Options options("synpo-matrix split", "[OPTION]... >PAIRS",
                   "Draws which pairs of environments and tasks are seen in training.");
   options.integer('n', "seen", "COUNT", "seen pairs", plan.seen, 0, INT64_MAX)
@@ -47,8 +49,7 @@ int matrix_split(int argc, char** argv) {
       .shown_as("4, or what -n allows")
       .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
       .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", "gridworld, gridworld:DIR, kitchen, kitchen:DIR, or any for names of your own",
-            world)
+      .text('w', "world", "WORLD", concat(worlds, "or any for names of your own").c_str(), world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")

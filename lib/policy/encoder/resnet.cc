@@ -10,20 +10,25 @@
 namespace synpo {
 namespace {
 
-constexpr int kUnit = 32;  // samples of a shard
+constexpr int kUnit = 32;                 // samples of a shard
+constexpr float kPixelScale = 1.0f / 64;  // "fixed scaling": pixel value to network input
+
+uint8_t value_of(const Rgb& colour, int channel) {
+  return channel == 0 ? colour.r : channel == 1 ? colour.g : colour.b;
+}
 
 }  // namespace
 
 template <class T>
-ResNet<T>::ResNet(const std::vector<int>& channels, int feature, bool normalise_input, Layout& parameters,
-                  Layout& statistics)
-    : feature_(feature), normalise_input_(normalise_input) {
+ResNet<T>::ResNet(const ObservationSpec& observation, const std::vector<int>& channels, int feature,
+                  bool normalise_input, Layout& parameters, Layout& statistics)
+    : side_(observation.side), feature_(feature), palette_(observation.palette), normalise_input_(normalise_input) {
   static constexpr int strides[4] = {2, 2, 2, 1};
   if (normalise_input_) {
-    input_mean_ = statistics.add("encoder.input.mean", {kViewChannels});
-    input_variance_ = statistics.add("encoder.input.variance", {kViewChannels});
+    input_mean_ = statistics.add("encoder.input.mean", {kChannels});
+    input_variance_ = statistics.add("encoder.input.variance", {kChannels});
   }
-  int side = kGridSide, in = kViewChannels;
+  int side = side_, in = kChannels;
   for (int stage = 0; stage < 4; ++stage)
     for (int b = 0; b < 2; ++b) {
       const std::string name = "encoder.stage" + std::to_string(stage + 1) + ".block" + std::to_string(b + 1);
@@ -35,8 +40,8 @@ ResNet<T>::ResNet(const std::vector<int>& channels, int feature, bool normalise_
   flat_ = size_t(side) * side * in;
   fc_weight_ = parameters.add("encoder.fc.weight", {int(flat_), feature});
   fc_bias_ = parameters.add("encoder.fc.bias", {feature});
-  input_shift_.assign(kViewChannels, 0);
-  input_scale_.assign(kViewChannels, T(kPixelScale));
+  input_shift_.assign(kChannels, 0);
+  input_scale_.assign(kChannels, T(kPixelScale));
 }
 
 template <class T>
@@ -46,22 +51,23 @@ void ResNet<T>::initialise(uint64_t seed, T* parameters, T* statistics) const {
   stream.uniform(parameters + fc_weight_, flat_ * feature_, xavier_bound(int(flat_), feature_));
   std::fill_n(parameters + fc_bias_, feature_, T(0));
   if (normalise_input_) {
-    std::fill_n(statistics + input_mean_, kViewChannels, T(0));
-    std::fill_n(statistics + input_variance_, kViewChannels, T(1));
+    std::fill_n(statistics + input_mean_, kChannels, T(0));
+    std::fill_n(statistics + input_variance_, kChannels, T(1));
   }
 }
 
 template <class T>
 void ResNet<T>::expand(int n, const uint8_t* pictures, T* x) const {
   // Value of every (frame, colour), [history, colours, 3].
-  T values[kHistory][kGridColours][3];
+  const size_t colours = palette_.size();
+  std::vector<std::array<T, 3>> values(kHistory * colours);
   for (int f = 0; f < kHistory; ++f)
-    for (int colour = 0; colour < kGridColours; ++colour) {
-      const uint8_t rgb[3] = {kPalette[colour].r, kPalette[colour].g, kPalette[colour].b};
-      for (int i = 0; i < 3; ++i) values[f][colour][i] = (rgb[i] - input_shift_[3 * f + i]) * input_scale_[3 * f + i];
-    }
-  for (size_t at = 0; at < size_t(n) * kGridCells * kHistory; ++at)
-    std::copy_n(values[at % kHistory][pictures[at]], 3, x + 3 * at);
+    for (size_t colour = 0; colour < colours; ++colour)
+      for (int i = 0; i < 3; ++i)
+        values[f * colours + colour][size_t(i)] =
+            (value_of(palette_[colour], i) - input_shift_[3 * f + i]) * input_scale_[3 * f + i];
+  for (size_t at = 0; at < n * observation_size(); ++at)
+    std::copy_n(values[at % kHistory * colours + pictures[at]].data(), 3, x + 3 * at);
 }
 
 template <class T>
@@ -75,7 +81,7 @@ void ResNet<T>::prepare_blocks(Parallel& parallel, const T* parameters, bool tra
 
 template <class T>
 void ResNet<T>::freeze_input(const T* statistics) {
-  for (int c = 0; c < kViewChannels; ++c) {
+  for (int c = 0; c < kChannels; ++c) {
     input_shift_[c] = statistics[input_mean_ + c];
     input_scale_[c] = T(1 / std::sqrt(statistics[input_variance_ + c] + kNormEpsilon));
   }
@@ -84,23 +90,23 @@ void ResNet<T>::freeze_input(const T* statistics) {
 template <class T>
 void ResNet<T>::normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics) {
   const int shards = shard_count(n, kUnit);
-  std::vector<std::array<std::array<uint32_t, kGridColours>, kHistory>> counts(shards);
+  const size_t colours = palette_.size();
+  std::vector<std::vector<uint32_t>> counts(shards);  // [history, colours]
   parallel.run(shards, [&](int shard, int) {
     const Range range = shard_range(n, kUnit, shard);
-    auto& count = counts[shard];
-    for (auto& frame : count) frame.fill(0);
-    for (size_t at = size_t(range.begin) * kGridCells * kHistory; at < size_t(range.end) * kGridCells * kHistory; ++at)
-      ++count[at % kHistory][pictures[at]];
+    std::vector<uint32_t> count(kHistory * colours, 0);
+    for (size_t at = range.begin * observation_size(); at < range.end * observation_size(); ++at)
+      ++count[at % kHistory * colours + pictures[at]];
+    counts[shard] = std::move(count);
   });
-  const double total = double(n) * kGridCells;
-  for (int channel = 0; channel < kViewChannels; ++channel) {
+  const double total = double(n) * double(pixels());
+  for (int channel = 0; channel < kChannels; ++channel) {
     double sum = 0, squares = 0;
     for (const auto& count : counts)
-      for (int colour = 0; colour < kGridColours; ++colour) {
-        const uint8_t rgb[3] = {kPalette[colour].r, kPalette[colour].g, kPalette[colour].b};
-        const double value = rgb[channel % 3];
-        sum += value * count[channel / 3][colour];
-        squares += value * value * count[channel / 3][colour];
+      for (size_t colour = 0; colour < colours; ++colour) {
+        const double value = value_of(palette_[colour], channel % 3), times = count[channel / 3 * colours + colour];
+        sum += value * times;
+        squares += value * value * times;
       }
     const double mean = sum / total, variance = std::max(0.0, squares / total - mean * mean);
     input_shift_[channel] = T(mean);
@@ -119,10 +125,10 @@ void ResNet<T>::forward(Parallel& parallel, int n, const uint8_t* pictures, cons
   prepare_blocks(parallel, parameters, true);
   if (normalise_input_ && frozen) freeze_input(statistics);
   if (normalise_input_ && !frozen) normalise_input(parallel, n, pictures, statistics);
-  T* input = input_.grow(n * kInputSize);
+  T* input = input_.grow(n * input_size());
   LazyPictures<T> x = {input, [&](Range samples) {
-                         expand(samples.size(), pictures + size_t(samples.begin) * kGridCells * kHistory,
-                                input + samples.begin * kInputSize);
+                         expand(samples.size(), pictures + samples.begin * observation_size(),
+                                input + samples.begin * input_size());
                        }};
   for (ResidualBlock<T>& block : blocks_) {
     block.forward(parallel, work_, n, x, parameters, statistics, frozen);
@@ -160,7 +166,7 @@ void ResNet<T>::prepare_inference(Parallel& parallel, const T* parameters, const
 template <class T>
 void ResNet<T>::infer(int thread, int n, const uint8_t* pictures, T* psi) {
   auto& scratch = work_.scratch[size_t(thread)];
-  const size_t place = n * std::max(kInputSize, largest_);
+  const size_t place = n * std::max(input_size(), largest_);
   T* x = scratch.picture.grow(5 * place);
   T* next = x + place;
   T* const spare[3] = {x + 2 * place, x + 3 * place, x + 4 * place};

@@ -1,4 +1,4 @@
-// The state feature psi(s) of GridWorld: the residual network of Table 2.
+// The state feature psi(s) of pictures: the residual network of Table 2.
 //
 // Four stages of two basic blocks (3x3 conv, norm, ReLU, 3x3 conv, norm, plus the shortcut, ReLU), first strides 2 2 2
 // 1, then a dense layer. A 1x1 convolution with normalisation stands on a shortcut that changes shape.
@@ -10,7 +10,7 @@
 #include "nn/layers/residual_block.h"
 #include "nn/layout.h"
 #include "policy/encoder/encoder.h"
-#include "world/grid/view.h"
+#include "world/observation.h"
 
 namespace synpo {
 
@@ -18,10 +18,10 @@ template <class T>
 class ResNet : public Encoder<T> {
  public:
   // Appends its tensors to the two layouts, under `encoder.`.
-  ResNet(const std::vector<int>& channels, int feature, bool normalise_input, Layout& parameters, Layout& statistics);
+  ResNet(const ObservationSpec& observation, const std::vector<int>& channels, int feature, bool normalise_input,
+         Layout& parameters, Layout& statistics);
 
-  // Pictures [16, 16, history] of colour indices.
-  size_t observation_size() const override { return size_t(kGridCells) * kHistory; }
+  size_t observation_size() const override { return pixels() * kHistory; }
 
   // Convolutions as PyTorch does by default, the dense layer Xavier uniform, norms 1 and 0.
   void initialise(uint64_t seed, T* parameters, T* statistics) const override;
@@ -41,9 +41,12 @@ class ResNet : public Encoder<T> {
   void normalise_input(Parallel& parallel, int n, const uint8_t* pictures, T* statistics);
   void prepare_blocks(Parallel& parallel, const T* parameters, bool training);
 
-  static constexpr size_t kInputSize = size_t(kGridCells) * kViewChannels;  // of one sample
+  size_t pixels() const { return size_t(side_) * side_; }
+  size_t input_size() const { return pixels() * kChannels; }  // of one sample
 
-  int feature_;
+  static constexpr int kChannels = ObservationSpec::kChannels;
+  int side_, feature_;
+  std::vector<Rgb> palette_;
   bool normalise_input_;
   std::vector<ResidualBlock<T>> blocks_;
   size_t fc_weight_, fc_bias_, input_mean_ = 0, input_variance_ = 0;

@@ -13,7 +13,8 @@ template <class T>
 std::unique_ptr<Encoder<T>> make_encoder(const PolicyShape& shape, Layout& parameters, Layout& statistics) {
   if (shape.observation.sight == Sight::kFeatures)
     return std::make_unique<TemporalNet<T>>(shape.observation, shape.views, shape.feature, parameters);
-  return std::make_unique<ResNet<T>>(shape.channels, shape.feature, shape.normalise_input, parameters, statistics);
+  return std::make_unique<ResNet<T>>(shape.observation, shape.channels, shape.feature, shape.normalise_input,
+                                     parameters, statistics);
 }
 
 }  // namespace

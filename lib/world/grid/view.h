@@ -13,8 +13,6 @@
 
 namespace synpo {
 
-constexpr int kViewChannels = 3 * kHistory;
-
 // One colour a kind of cell. Everything but black lies on a corner of its own of the colours' hull as far as it can, so
 // that a single linear filter finds any one of them.
 enum GridColour : uint8_t {
@@ -26,7 +24,6 @@ enum GridColour : uint8_t {
 };  // treasures follow in the order of kTreasureLetters
 constexpr int kGridColours = kFirstTreasure + kTreasures;
 extern const std::array<Rgb, kGridColours> kPalette;
-constexpr float kPixelScale = 1.0f / 64;  // "fixed scaling": pixel value to network input
 
 // The colour of every cell, row by row.
 void draw_view(const Maze& maze, const GridFrame& frame, int radius, uint8_t colours[kGridCells]);

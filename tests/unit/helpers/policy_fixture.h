@@ -23,8 +23,8 @@ inline std::vector<uint8_t> bytes_of(const std::vector<float>& values) {
 
 inline std::vector<uint8_t> random_observations(int size, const PolicyShape& shape, Random& random) {
   if (shape.observation.sight == Sight::kPictures) {
-    std::vector<uint8_t> pictures(size_t(size) * kGridCells * kHistory);
-    for (uint8_t& colour : pictures) colour = uint8_t(random.below(kGridColours));
+    std::vector<uint8_t> pictures(size * shape.observation.bytes());
+    for (uint8_t& colour : pictures) colour = uint8_t(random.below(uint32_t(shape.observation.palette.size())));
     return pictures;
   }
   const size_t row = shape.observation.bytes() / sizeof(float), views = row - ObservationSpec::kObjectFloats;

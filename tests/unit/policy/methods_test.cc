@@ -19,6 +19,7 @@ struct Variant {
   int action_embedding = 0;
   SfLoss sf_loss = SfLoss::kTemporalDifference;
   Sight sight = Sight::kPictures;
+  int side = kGridSide;  // of pictures; others have colours of their own
 
   PolicyShape shape(bool full = false) const {
     PolicyShape shape = sight == Sight::kFeatures ? tiny_feature_shape() : tiny_shape(normalise);
@@ -31,6 +32,7 @@ struct Variant {
       if (method != "synpo" || action_embedding > 0) shape.channels = tiny_shape(false).channels;
       shape.normalise_input = shape.normalise_embeddings = normalise;
     }
+    if (side != kGridSide) shape.observation = {Sight::kPictures, side, {{0, 0, 0}, {250, 90, 10}, {20, 40, 60}}};
     shape.action_embedding = full && action_embedding > 0 ? 32 : action_embedding;
     shape.sf_loss = sf_loss;
     return shape;
@@ -43,6 +45,7 @@ std::ostream& operator<<(std::ostream& to, const Variant& variant) { return to <
 const Variant kVariants[] = {{"SynPo", "synpo"},
                              {"SynPoOfFeatures", "synpo", false, 0, SfLoss::kTemporalDifference, Sight::kFeatures},
                              {"SynPoNormalised", "synpo", true},
+                             {"SynPoOfSmallPictures", "synpo", true, 0, {}, Sight::kPictures, 9},
                              {"SynPoGeneral", "synpo", false, 3},
                              {"SynPoGeneralNormalised", "synpo", true, 7},
                              {"Mtl", "mtl"},

@@ -25,7 +25,7 @@ TEST(SynPo, StatisticsOfTheInputAreThePixels) {
   net.step(parallel, steps.batch(), {{0.01, 0.1, 1}});
   const size_t mean_at = net.policy->statistics().find("encoder.input.mean")->offset,
                variance_at = net.policy->statistics().find("encoder.input.variance")->offset;
-  for (int channel = 0; channel < kViewChannels; ++channel) {
+  for (int channel = 0; channel < ObservationSpec::kChannels; ++channel) {
     const double count = 37 * kGridCells;
     double sum = 0, squares = 0;
     for (size_t at = channel / 3; at < steps.observations.size(); at += kHistory) {
@@ -48,12 +48,12 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
   Parallel parallel(1);
   plain.initialise();
   plain.step(parallel, steps.batch(), {{0, 0, 0}});
-  std::vector<double> mean = random_values<double>(kViewChannels, 1),
-                      deviation = random_values<double>(kViewChannels, 2);
+  std::vector<double> mean = random_values<double>(ObservationSpec::kChannels, 1),
+                      deviation = random_values<double>(ObservationSpec::kChannels, 2);
   const auto statistic = [](Network<double>& net, const std::string& name) {
     return net.statistics.data() + net.policy->statistics().find(name)->offset;
   };
-  for (int c = 0; c < kViewChannels; ++c) {
+  for (int c = 0; c < ObservationSpec::kChannels; ++c) {
     statistic(normalised, "encoder.input.mean")[c] = mean[c] = 60 + 50 * mean[c];
     deviation[c] = 70 + 30 * deviation[c];
     statistic(normalised, "encoder.input.variance")[c] = deviation[c] * deviation[c] - 1e-5;
@@ -64,7 +64,7 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
   double* weights =
       plain.parameters.data() + plain.policy->parameters().find("encoder.stage1.block1.conv1.weight")->offset;
   for (int tap = 0; tap < 9; ++tap)
-    if (tap != 4) std::fill_n(weights + tap * kViewChannels * out, kViewChannels * out, 0.0);
+    if (tap != 4) std::fill_n(weights + tap * ObservationSpec::kChannels * out, ObservationSpec::kChannels * out, 0.0);
   normalised.parameters = plain.parameters;
   for (const auto& [conv, norm] :
        {std::pair<std::string, std::string>{"conv1", "norm1"}, {"shortcut", "shortcut_norm"}}) {
@@ -72,8 +72,8 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
     const auto parameter = [&](const std::string& name) {
       return plain.parameters.data() + plain.policy->parameters().find(block + name)->offset;
     };
-    double* w = parameter(conv + ".weight") + (conv == "conv1" ? 4 * kViewChannels * out : 0);
-    for (int c = 0; c < kViewChannels; ++c)
+    double* w = parameter(conv + ".weight") + (conv == "conv1" ? 4 * ObservationSpec::kChannels * out : 0);
+    for (int c = 0; c < ObservationSpec::kChannels; ++c)
       for (int o = 0; o < out; ++o) {
         double& weight = w[c * out + o];
         const double slope =
