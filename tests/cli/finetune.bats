@@ -35,8 +35,8 @@ setup() {
 @test "adapt: maps that the checkpoint has not, and maps that are others" {
     mkdir more same
     synpo-eval --describe <a.ckpt >/dev/null
-    cp "$ROOT/lib/world/maps/map1.txt" more/map21.txt
-    cp "$ROOT/lib/world/maps/map2.txt" same/map1.txt
+    cp "$ROOT/lib/world/grid/maps/map1.txt" more/map21.txt
+    cp "$ROOT/lib/world/grid/maps/map2.txt" same/map1.txt
     printf 'env\ttask\nmap21\tR-B\n' >far.tsv
     synpo-gen-expert -w gridworld:more -p far.tsv -n 2 >far.jsonl
     fails 65 synpo-finetune adapt -q -c a.ckpt -n 1 <far.jsonl
