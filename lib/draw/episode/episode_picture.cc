@@ -65,8 +65,8 @@ Canvas draw_episode(const WorldFace& face, const Film& film, const EpisodeStyle&
   const Key key(entries, beside ? 1 : inside, style.scale, font);
   const Heading heading(style.title.empty() ? face.name(film.pair) : style.title, face.describe(film), inside,
                         style.scale, font);
-  const Strip strip("what the agent saw as it took these steps" + face.seen_words(film),
-                    strip_pictures(face, film, style.strip), kStripColumns, face.seen_unit(), inside, px, font);
+  const FilmStrip strip("what the agent saw as it took these steps" + face.seen_words(film),
+                        strip_pictures(face, film, style.strip), kStripColumns, face.seen_unit(), inside, px, font);
 
   const int plan_y = margin + heading.height() + px(4);
   const int key_x = beside ? margin + plan.wide + bar + between : margin,

@@ -11,8 +11,8 @@ constexpr double kTextPt = 9, kLabelPt = 7.5, kLinePt = 10;
 
 }  // namespace
 
-Strip::Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width,
-             const Pixels& px, const Font& font)
+FilmStrip::FilmStrip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width,
+                     const Pixels& px, const Font& font)
     : heading_(std::move(heading)), pictures_(std::move(pictures)), px_(px), gap_(px(8)), line_(px(1.5)),
       side_(std::max(1, ((width + gap_) / columns - gap_ - 2 * line_) / unit) * unit + 2 * line_),
       columns_(std::min(columns, (width + gap_) / (side_ + gap_))),
@@ -23,11 +23,11 @@ Strip::Strip(std::string heading, std::vector<StripPicture> pictures, int column
   }
 }
 
-int Strip::row_height() const { return side_ + px_(4) + px_(kLabelPt) + (lines_ - 1) * px_(kLinePt) + px_(6); }
-int Strip::heading_height() const { return px_(kTextPt) + px_(7); }
-int Strip::height() const { return pictures_.empty() ? 0 : heading_height() + rows() * row_height() - px_(6); }
+int FilmStrip::row_height() const { return side_ + px_(4) + px_(kLabelPt) + (lines_ - 1) * px_(kLinePt) + px_(6); }
+int FilmStrip::heading_height() const { return px_(kTextPt) + px_(7); }
+int FilmStrip::height() const { return pictures_.empty() ? 0 : heading_height() + rows() * row_height() - px_(6); }
 
-void Strip::draw(Canvas& canvas, int x, int y) const {
+void FilmStrip::draw(Canvas& canvas, int x, int y) const {
   if (pictures_.empty()) return;
   canvas.text(x, y, heading_, px_(kTextPt), kSoftInk);
   for (size_t i = 0; i < pictures_.size(); ++i) {

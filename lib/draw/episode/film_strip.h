@@ -14,12 +14,12 @@ struct StripPicture {
   Sign draw;
 };
 
-class Strip {
+class FilmStrip {
  public:
   // In a strip `width` pixels wide, at most `columns` in a row; the side of a picture is a multiple of `unit` pixels.
   // Labels that are wider are broken.
-  Strip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px,
-        const Font& font);
+  FilmStrip(std::string heading, std::vector<StripPicture> pictures, int columns, int unit, int width, const Pixels& px,
+            const Font& font);
 
   int height() const;  // 0 without pictures
   void draw(Canvas& canvas, int x, int y) const;
