@@ -61,7 +61,8 @@ int body(int argc, char** argv) {
     for (const Environment& env : world.environments())
       for (const std::string& task : world.task_names()) rows.push_back({env.name, task, false, ""});
   }
-  const std::vector<EnvTask> pairs = resolve_pairs(world, rows, false);
+  const std::vector<EnvTask> pairs =
+      resolve_pairs(world, rows, false, pairs_path.empty() ? checkpoint.source : pairs_path);
   if (pairs.empty()) fail(Exit::kData, "no pair in '", pairs_path, "'");
 
   const bool records_to_stdout = record_path == "-";

@@ -70,7 +70,7 @@ int gen_expert(int argc, char** argv) {
       for (int task = 0; task < world.task_count(); ++task) pairs.push_back({env, task});
   } else {
     Input input(pairs_path);
-    pairs = resolve_pairs(world, read_pairs(input), true);
+    pairs = resolve_pairs(world, read_pairs(input), true, input.name());
   }
   if (pairs.empty()) fail(Exit::kData, "no pair with seen = 1 in '", pairs_path, "'");
 

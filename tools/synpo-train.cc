@@ -138,7 +138,7 @@ int body(int argc, char** argv) {
   std::vector<EnvTask> seen;
   if (!s.pairs.empty()) {
     Input input(s.pairs);
-    seen = resolve_pairs(world, read_pairs(input), true);
+    seen = resolve_pairs(world, read_pairs(input), true, input.name());
     if (seen.empty()) fail(Exit::kData, "no pair with seen = 1 in '", s.pairs, "'");
   }
   std::unique_ptr<Imitation> run;

@@ -3,6 +3,7 @@
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 namespace synpo {
 
@@ -47,8 +48,16 @@ template <class... Args>
   throw Error(code, concat(args...), cause);
 }
 
-// `text` between single quotes, cut at 60 bytes, with control characters and invalid UTF-8 written as \xNN.
+// `text` with control characters, marks of direction and invalid UTF-8 written as \xNN, cut at `limit` bytes: foreign
+// input that is shown.
+std::string printable(std::string_view text, size_t limit = std::string_view::npos);
+
+// `text` between single quotes, cut at 60 bytes, made printable().
 // For naming foreign input in a message.
 std::string quoted(const std::string& text);
+
+// The character at `at`, for a message: "'x'"; by its name or number where it cannot be seen: "a tab", "a no-break
+// space", "a byte order mark", "U+200B", "the byte \xff".
+std::string character_text(std::string_view text, size_t at);
 
 }  // namespace synpo

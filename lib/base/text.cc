@@ -27,8 +27,9 @@ size_t utf8_length(std::string_view text, size_t at) {
 size_t first_bad_byte(std::string_view text) {
   for (size_t i = 0; i < text.size();) {
     const uint8_t lead = uint8_t(text[i]);
-    const bool control = (lead < 0x20 && lead != '\t') || lead == 0x7f;
     const size_t length = utf8_length(text, i);
+    const bool c1 = lead == 0xc2 && length == 2 && uint8_t(text[i + 1]) < 0xa0;
+    const bool control = (lead < 0x20 && lead != '\t') || lead == 0x7f || c1;
     if (control || length == 0) return i;
     i += length;
   }

@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "format/json_text.h"
 
 namespace synpo {
 namespace {
@@ -18,16 +19,21 @@ constexpr int64_t kMostCount = int64_t(1) << 53;  // so that no run comes to the
 
 int64_t whole(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
-  const Json value = Json::parse(text, nullptr, false);
-  if (!value.is_number_unsigned() || value.get<uint64_t>() > uint64_t(INT64_MAX))
+  int64_t value = 0;
+  if (!parse_whole(text, value) || value < 0)
     fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number from 0");
-  return value.get<int64_t>();
+  return value;
 }
 
-Json structure(const SafeTensors& file, const std::string& key) {
-  const Json value = Json::parse(file.meta(key), nullptr, false);
-  if (value.is_discarded()) fail(Exit::kData, "metadata '", key, "': no JSON");
-  return value;
+template <class T>
+T structure(const SafeTensors& file, const std::string& key, const char* expected) {
+  try {
+    return parse_json(file.meta(key)).get<T>();
+  } catch (const Json::exception&) {
+    fail(Exit::kData, "metadata '", key, "': expected ", expected);
+  } catch (const Error& error) {
+    fail(error.code(), "metadata '", key, "': ", error.what());
+  }
 }
 
 // A name, fit to be written again.
@@ -58,6 +64,26 @@ OrderedJson to_json(const Checkpoint& c) {
   return out;
 }
 
+// JSON text with the characters escaped that JSON allows raw and a terminal acts on: DEL and the C1 controls.
+std::string without_controls(const std::string& text) {
+  std::string out;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto byte = [&](size_t at) { return at < text.size() ? uint8_t(text[at]) : 0; };
+    if (byte(i) == 0x7f) {
+      out += "\\u007f";
+    } else if (byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0) {
+      static const char digits[] = "0123456789abcdef";
+      out += "\\u00";
+      out += digits[byte(i + 1) >> 4];
+      out += digits[byte(i + 1) & 15];
+      ++i;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 uint64_t Checkpoint::weights_hash() const {
@@ -76,11 +102,12 @@ std::string Checkpoint::describe() const {
   out["weights_hash"] = hex(weights_hash());
   OrderedJson& tensors = out["tensors"] = OrderedJson::object();
   for (const auto& [name, tensor] : file.tensors) tensors[name] = tensor.shape;
-  return out.dump(2);
+  return without_controls(out.dump(2));
 }
 
 Checkpoint read_checkpoint(Input& input) {
   Checkpoint c;
+  c.source = input.name();
   c.file = read_safetensors(input);
   try {
     const SafeTensors& file = c.file;
@@ -99,23 +126,24 @@ Checkpoint read_checkpoint(Input& input) {
     if (std::max(c.updates, c.states) > kMostCount)
       fail(Exit::kData, "metadata 'updates', 'states': expected at most 2^53");
     c.seed = uint64_t(whole(file, "seed"));
-    c.tasks = structure(file, "tasks").get<std::vector<std::string>>();
-    c.seen = structure(file, "seen").get<std::vector<std::pair<std::string, std::string>>>();
+    c.tasks = structure<std::vector<std::string>>(file, "tasks", "an array of names");
+    c.seen = structure<std::vector<std::pair<std::string, std::string>>>(file, "seen", "an array of pairs of names");
     for (const std::string& task : c.tasks) checked_name("tasks", task);
     for (const auto& [env, task] : c.seen)
       for (const std::string& name : {env, task}) checked_name("seen", name);
-    const Json shape = structure(file, "shape");
-    for (const auto& [name, size] : shape.items())
+    for (const auto& [name, size] : structure<std::map<std::string, Json>>(file, "shape", "an object of numbers")) {
       if (!size.is_number_integer()) fail(Exit::kData, "metadata 'shape': ", quoted(name), " is no whole number");
-    c.shape = shape.get<std::map<std::string, int64_t>>();
-    c.options = structure(file, "options").get<std::map<std::string, std::string>>();
-    for (const Json& env : structure(file, "envs"))
-      c.envs.push_back({checked_name("envs", env.at("name").get<std::string>()),
-                        parse_hex(env.at("hash").get<std::string>()), env.at("content").get<std::string>()});
+      c.shape[name] = size.get<int64_t>();
+    }
+    c.options = structure<std::map<std::string, std::string>>(file, "options", "an object of strings");
+    for (const auto& env : structure<std::vector<std::map<std::string, std::string>>>(
+             file, "envs", "an array of objects with name, hash and content")) {
+      for (const char* field : {"name", "hash", "content"})
+        if (!env.contains(field)) fail(Exit::kData, "metadata 'envs': an object has no '", field, "'");
+      c.envs.push_back({checked_name("envs", env.at("name")), parse_hex(env.at("hash")), env.at("content")});
+    }
   } catch (const Error& error) {
     fail(error.code(), "cannot read ", input.name(), ": ", error.what());
-  } catch (const Json::exception& error) {
-    fail(Exit::kData, "cannot read ", input.name(), ": malformed metadata (", error.what(), ")");
   }
   return c;
 }

@@ -18,6 +18,7 @@ struct Checkpoint {
     uint64_t hash;
     std::string content;  // canonical; empty where it lies in a file of its own
   };
+  std::string source;  // where it was read, for messages; not in the file
   std::string method = "synpo";
   std::string world = "gridworld";
   int rules = 1;

@@ -34,6 +34,7 @@ std::vector<PairRow> read_pairs(Input& input) {
     if (!fresh)
       input.bad_line(
           concat("pair ", quoted(row.env), ", ", quoted(row.task), " stands in line ", it->second, " already"));
+    row.line = reader.line();
     rows.push_back(std::move(row));
   }
   if (rows.empty()) fail(Exit::kData, input.name(), ": line 1: found a header and no row, expected at least one pair");

@@ -10,8 +10,9 @@ namespace synpo {
 
 struct PairRow {
   std::string env, task;
-  bool seen = true;  // no such column: every row counts as seen
-  std::string part;  // empty where there is no such column
+  bool seen = true;   // no such column: every row counts as seen
+  std::string part;   // empty where there is no such column
+  uint64_t line = 0;  // of the file that it was read from; 0: none
 };
 
 // Throws kData for a missing column, a repeated pair, a seen that is neither 0 nor 1, another part, no row, or more

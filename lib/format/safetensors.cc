@@ -5,13 +5,15 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "format/json_text.h"
 
 namespace synpo {
 namespace {
 
 using Json = nlohmann::json;
 
-constexpr uint64_t kHeaderLimit = 100 << 20;  // as other readers of the format have it
+constexpr uint64_t kHeaderLimit = 100'000'000;  // as other readers of the format have it
+constexpr JsonLimits kHeaderLimits = {4, 1 << 20};
 constexpr uint64_t kFileLimit = uint64_t{16} << 30;
 
 struct TypeName {
@@ -113,16 +115,14 @@ SafeTensors read_safetensors(Input& input) {
   if (got < sizeof length) bad("it ends at byte ", got, ", expected a safetensors header");
   if (length < 2 || length > kHeaderLimit) bad("not a safetensors file (header length ", length, ")");
   const std::string header = read_bytes(input, length, "the header");
-  int depth = 0;
-  const Json json = Json::parse(
-      header,
-      [&](int at, Json::parse_event_t, Json&) {
-        depth = std::max(depth, at);
-        if (depth > 4) bad("not a safetensors file (nested header)");
-        return true;
-      },
-      false);
-  if (json.is_discarded() || !json.is_object()) bad("not a safetensors file (the header is no JSON object)");
+  const Json json = [&] {
+    try {
+      return parse_json(header, kHeaderLimits);
+    } catch (const Error& error) {
+      fail(Exit::kData, "cannot read ", input.name(), ": not a safetensors file (the header: ", error.what(), ")");
+    }
+  }();
+  if (!json.is_object()) bad("not a safetensors file (the header is no JSON object)");
 
   SafeTensors file;
   struct Place {

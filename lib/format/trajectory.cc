@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "format/json_text.h"
 
 namespace synpo {
 namespace {
@@ -95,18 +96,14 @@ std::string format_trajectory(const Trajectory& t) {
 }
 
 Trajectory parse_trajectory(const std::string& line, int step_limit) {
-  // Nesting is two deep in the format: depth is bounded here, before anything recurses over it.
-  int depth = 0;
-  const Json object = Json::parse(
-      line,
-      [&depth](int at, Json::parse_event_t, Json&) {
-        depth = std::max(depth, at);
-        if (at > 8) fail(Exit::kData, "nested more than 8 deep: not a trajectory");
-        return true;
-      },
-      false);
-  if (object.is_discarded() || !object.is_object())
-    fail(Exit::kData, "found ", quoted(line), ", expected a JSON object");
+  const Json object = [&] {
+    try {
+      return parse_json(line);
+    } catch (const Error& error) {
+      fail(error.code(), "found ", line.empty() ? "an empty line" : error.what(), ", expected a JSON object");
+    }
+  }();
+  if (!object.is_object()) fail(Exit::kData, "found ", quoted(line), ", expected a JSON object");
   if (text(object, "format") != kFormat) wrong("format", object["format"], kFormat);
   const int64_t version = whole("version", need(object, "version"), 0, INT32_MAX);
   if (version < 1 || version > kTrajectoryVersion)

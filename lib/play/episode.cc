@@ -102,12 +102,17 @@ Trajectory relabelled(const World& world, const Trajectory& trajectory) {
   return out;
 }
 
-std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only) {
+std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only,
+                                   const std::string& file) {
   std::vector<EnvTask> pairs;
   for (const PairRow& row : rows) {
     const EnvTask pair = {world.env_index(row.env), world.task_index(row.task)};
-    if (pair.env < 0) fail(Exit::kData, "pairs: unknown env ", quoted(row.env), " (other maps?)");
-    if (pair.task < 0) fail(Exit::kData, "pairs: unknown task ", quoted(row.task));
+    const auto unknown = [&](const char* what, const std::string& name, const std::string& first) {
+      fail(Exit::kData, file, row.line > 0 ? concat(": line ", row.line) : "", ": found the ", what, " ", quoted(name),
+           ", expected one of the world ", quoted(world.name()), ", such as ", quoted(first));
+    };
+    if (pair.env < 0) unknown("env", row.env, world.environments().front().name);
+    if (pair.task < 0) unknown("task", row.task, world.task_names().front());
     if (row.seen || !seen_only) pairs.push_back(pair);
   }
   return pairs;

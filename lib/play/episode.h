@@ -48,6 +48,7 @@ Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64
 
 // Pairs by name to pairs by position; rows with seen = 0 are left out where `seen_only`. Throws kData for an unknown
 // name.
-std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only);
+std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only,
+                                   const std::string& file);
 
 }  // namespace synpo

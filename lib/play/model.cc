@@ -10,6 +10,63 @@
 
 namespace synpo {
 
+namespace {
+
+// What `body` finds wrong with the checkpoint's data is said of its file.
+template <class Body>
+auto naming_file(const Checkpoint& checkpoint, Body&& body) {
+  try {
+    return body();
+  } catch (const Error& error) {
+    if (error.code() != Exit::kData || checkpoint.source.empty()) throw;
+    fail(Exit::kData, "cannot read ", checkpoint.source, ": ", error.what());
+  }
+}
+
+std::unique_ptr<World> restored_world(const Checkpoint& checkpoint, const World* source) {
+  if (checkpoint.envs.empty()) fail(Exit::kData, "the checkpoint has no environment");
+  std::vector<Environment> environments;
+  for (const Checkpoint::Env& env : checkpoint.envs) environments.push_back({env.name, env.hash, env.content});
+  std::unique_ptr<World> world = restore_world(checkpoint.world, environments, source);
+  if (checkpoint.rules != world->rules())
+    fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", world->rules());
+  if (checkpoint.tasks != world->task_names()) fail(Exit::kData, "the checkpoint's tasks are not this build's");
+  return world;
+}
+
+Model loaded_model(const Checkpoint& checkpoint, const World& world) {
+  Model model;
+  model.method = checkpoint.method;
+  model.shape = parse_shape(checkpoint.shape);
+  const ObservationSpec &said = model.shape.observation, &spec = world.observation_spec();
+  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() ||
+      model.shape.actions != world.actions() || said.sight != spec.sight || said.view != spec.view ||
+      said.objects != spec.objects)
+    fail(Exit::kData, "the network's shape does not fit the world");
+  model.shape.observation = spec;
+  if (!checkpoint.extractor.empty() && checkpoint.extractor != world.extractor())
+    fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ",
+         quoted(world.extractor()));
+  model.window = checkpoint.window;
+  model.seed = checkpoint.seed;
+  model.updates = checkpoint.updates;
+  model.states = checkpoint.states;
+  std::vector<PairRow> rows;
+  for (const auto& [env, task] : checkpoint.seen) rows.push_back({env, task, true, ""});
+  model.seen = resolve_pairs(world, rows, false, "metadata 'seen'");
+  model.policy = make_policy(model.method, model.shape);
+  // Before memory is taken for what a file only claims to hold.
+  for (const Layout* layout : {&model.policy->parameters(), &model.policy->statistics()})
+    check_tensors(checkpoint.file, "", *layout);
+  get_tensors(checkpoint.file, "", model.policy->parameters(),
+              model.parameters.grow(model.policy->parameters().total()));
+  get_tensors(checkpoint.file, "", model.policy->statistics(),
+              model.statistics.grow(model.policy->statistics().total()));
+  return model;
+}
+
+}  // namespace
+
 bool Model::is_seen(EnvTask pair) const { return std::find(seen.begin(), seen.end(), pair) != seen.end(); }
 
 bool Model::knows(EnvTask pair) const {
@@ -45,14 +102,7 @@ std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string&
 }
 
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source) {
-  if (checkpoint.envs.empty()) fail(Exit::kData, "the checkpoint has no environment");
-  std::vector<Environment> environments;
-  for (const Checkpoint::Env& env : checkpoint.envs) environments.push_back({env.name, env.hash, env.content});
-  std::unique_ptr<World> world = restore_world(checkpoint.world, environments, source);
-  if (checkpoint.rules != world->rules())
-    fail(Exit::kData, "rules version ", checkpoint.rules, ", this build has ", world->rules());
-  if (checkpoint.tasks != world->task_names()) fail(Exit::kData, "the checkpoint's tasks are not this build's");
-  return world;
+  return naming_file(checkpoint, [&] { return restored_world(checkpoint, source); });
 }
 
 void add_tensors(SafeTensors& file, const std::string& prefix, const Layout& layout, const float* values) {
@@ -88,34 +138,7 @@ void get_tensors(const SafeTensors& file, const std::string& prefix, const Layou
 }
 
 Model load_model(const Checkpoint& checkpoint, const World& world) {
-  Model model;
-  model.method = checkpoint.method;
-  model.shape = parse_shape(checkpoint.shape);
-  const ObservationSpec &said = model.shape.observation, &spec = world.observation_spec();
-  if (model.shape.envs != world.envs() || model.shape.tasks != world.task_count() ||
-      model.shape.actions != world.actions() || said.sight != spec.sight || said.view != spec.view ||
-      said.objects != spec.objects)
-    fail(Exit::kData, "the network's shape does not fit the world");
-  model.shape.observation = spec;
-  if (!checkpoint.extractor.empty() && checkpoint.extractor != world.extractor())
-    fail(Exit::kData, "the policy was trained on features of ", quoted(checkpoint.extractor), ", found those of ",
-         quoted(world.extractor()));
-  model.window = checkpoint.window;
-  model.seed = checkpoint.seed;
-  model.updates = checkpoint.updates;
-  model.states = checkpoint.states;
-  std::vector<PairRow> rows;
-  for (const auto& [env, task] : checkpoint.seen) rows.push_back({env, task, true, ""});
-  model.seen = resolve_pairs(world, rows, false);
-  model.policy = make_policy(model.method, model.shape);
-  // Before memory is taken for what a file only claims to hold.
-  for (const Layout* layout : {&model.policy->parameters(), &model.policy->statistics()})
-    check_tensors(checkpoint.file, "", *layout);
-  get_tensors(checkpoint.file, "", model.policy->parameters(),
-              model.parameters.grow(model.policy->parameters().total()));
-  get_tensors(checkpoint.file, "", model.policy->statistics(),
-              model.statistics.grow(model.policy->statistics().total()));
-  return model;
+  return naming_file(checkpoint, [&] { return loaded_model(checkpoint, world); });
 }
 
 Checkpoint describe_model(const Model& model, const World& world) {

@@ -186,8 +186,8 @@ env\tseen\nmap1\t1\n|no column 'task'
 env\ttask\tseen\nmap1\tR-B\n|bad.tsv: line 2: found 2 fields, expected 3
 env\ttask\tseen\nmap1\tR-B\tyes\n|line 2, column 3 ('seen'): found 'yes'
 env\ttask\nmap1\tR-B\nmap1\tR-B\n|line 3: pair 'map1', 'R-B' stands in line 2 already
-env\ttask\nmap99\tR-B\n|unknown env 'map99'
-env\ttask\nmap1\tR-X\n|unknown task 'R-X'
+env\ttask\nmap99\tR-B\n|bad.tsv: line 2: found the env 'map99', expected one of the world 'gridworld', such as 'map1'
+env\ttask\nmap1\tR-X\n|bad.tsv: line 2: found the task 'R-X', expected one of the world 'gridworld', such as 'R-B'
 env\ttask\nmap1\tR-B|cut off
 env\ttask\r\nmap1\tR-B\r\n|CR
 END

@@ -106,7 +106,7 @@ map() {
     says "found 0 floor cells"
     : >maps/map1.txt
     fails 65 synpo-gen-expert -n 1 -w gridworld:maps
-    says "found 0 lines"
+    says "found nothing"
 }
 
 @test "an empty folder, a missing one, a file in its place: 66" {

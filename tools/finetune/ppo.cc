@@ -150,7 +150,7 @@ int ppo(int argc, char** argv) {
                       : load_model(from, world);
   if (!s.pairs.empty()) {
     Input input(s.pairs);
-    model.seen = resolve_pairs(world, read_pairs(input), true);
+    model.seen = resolve_pairs(world, read_pairs(input), true, input.name());
   }
   if (model.seen.empty()) fail(Exit::kData, "no pair to learn on: give them with -p");
   Ppo run(world, parallel, std::move(model), tuning, uint64_t(s.seed));

@@ -278,7 +278,8 @@ bool Options::given(const char* name) const {
 int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv),
              const std::vector<Advice>& advice) {
   const auto report = [&](Exit code, const char* message) {
-    std::fprintf(stderr, "%s: %s\n", tool, message);
+    // Messages name what files and command lines hold: no byte of that may act on the terminal.
+    std::fprintf(stderr, "%s: %s\n", tool, printable(message).c_str());
     return int(code);
   };
   prepare_signals();

@@ -16,23 +16,26 @@
 namespace synpo {
 namespace {
 
-bool connected(const Maze& maze) {
+// A cell of floor that cannot be reached from the first one; -1 where there is none.
+int cut_off_cell(const Maze& maze) {
   std::vector<bool> reached(kGridCells, false);
   std::vector<int> stack = {maze.free_cells.front()};
   reached[stack.front()] = true;
-  size_t count = 0;
   while (!stack.empty()) {
     const int cell = stack.back();
     stack.pop_back();
-    ++count;
     for (const int next : {cell - kGridSide, cell + kGridSide, cell - 1, cell + 1})
       if (!maze.wall[next] && !reached[next]) {
         reached[next] = true;
         stack.push_back(next);
       }
   }
-  return count == maze.free_cells.size();
+  for (const int cell : maze.free_cells)
+    if (!reached[cell]) return cell;
+  return -1;
 }
+
+std::string place_of(int cell) { return concat("line ", cell / kGridSide + 1, ", column ", cell % kGridSide + 1); }
 
 std::vector<std::string> split_lines(const std::string& text) {
   std::vector<std::string> lines;
@@ -58,33 +61,46 @@ std::string Maze::canonical_text() const {
 }
 
 Maze parse_maze(const std::string& name, const std::string& text, const std::string& where) {
+  const auto bad = [&](const auto&... what) { fail(Exit::kData, where, ": ", what...); };
+  if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) bad("found UTF-16, expected plain ASCII text");
+  if (const size_t cr = text.find('\r'); cr != std::string::npos && text.find('\n') == std::string::npos)
+    bad("lines end in CR alone, expected LF or CR LF");
   const std::vector<std::string> lines = split_lines(text);
+  // Before lines and characters are counted: what cannot be seen is found nowhere else.
+  for (size_t row = 0; row < lines.size(); ++row)
+    for (size_t at = 0, column = 1; at < lines[row].size(); ++column) {
+      const char c = lines[row][at];
+      if (c != '#' && c != ' ' && c != '@')
+        bad("line ", row + 1, ", column ", column, ": found ", character_text(lines[row], at),
+            ", expected '#' (wall), ' ' or '@' (floor)");
+      at += std::max<size_t>(1, utf8_length(lines[row], at));
+    }
+  if (lines.empty())
+    bad("found ", text.empty() ? "nothing" : "blanks alone", ", expected a maze of ", kGridSide, " lines of ",
+        kGridSide, " characters");
   if (lines.size() != kGridSide)
-    fail(Exit::kData, where, ": found ", lines.size(), " lines, expected a maze of ", kGridSide, " lines of ",
-         kGridSide, " characters");
+    bad("found ", lines.size(), " lines, expected a maze of ", kGridSide, " lines of ", kGridSide, " characters");
   Maze maze;
   maze.name = name;
   for (int row = 0; row < kGridSide; ++row) {
     std::string line = lines[row];
+    if (line.empty()) bad("line ", row + 1, ": found an empty line, expected ", kGridSide, " characters");
     line.erase(std::min(line.size(), std::max<size_t>(kGridSide, line.find_last_not_of(' ') + 1)));
-    if (line.size() > kGridSide)
-      fail(Exit::kData, where, ": line ", row + 1, ": found ", line.size(), " characters, expected ", kGridSide);
+    if (line.size() > kGridSide) bad("line ", row + 1, ": found ", line.size(), " characters, expected ", kGridSide);
     for (int column = 0; column < kGridSide; ++column) {
       // Editors drop blanks at the end of a line: what is missing is floor, and the outer wall where it would stand in
       // it.
       const bool border = row == 0 || row == kGridSide - 1 || column == 0 || column == kGridSide - 1;
       const char c = column < int(line.size()) ? line[column] : border ? '#' : ' ';
-      const auto place = [&] { return concat(where, ": line ", row + 1, ", column ", column + 1, ": "); };
-      if (c != '#' && c != ' ' && c != '@')
-        fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected '#' (wall), ' ' or '@' (floor)");
-      if (border && c != '#') fail(Exit::kData, place(), "found floor, expected the outer wall");
-      maze.wall[row * kGridSide + column] = c == '#';
-      if (c != '#') maze.free_cells.push_back(uint8_t(row * kGridSide + column));
+      const int cell = row * kGridSide + column;
+      if (border && c != '#') bad(place_of(cell), ": found floor, expected the outer wall");
+      maze.wall[cell] = c == '#';
+      if (c != '#') maze.free_cells.push_back(uint8_t(cell));
     }
   }
-  if (maze.free_cells.size() < 6)
-    fail(Exit::kData, where, ": found ", maze.free_cells.size(), " floor cells, expected at least 6");
-  if (!connected(maze)) fail(Exit::kData, where, ": some floor cells cannot be reached from the others");
+  if (maze.free_cells.size() < 6) bad("found ", maze.free_cells.size(), " floor cells, expected at least 6");
+  if (const int cell = cut_off_cell(maze); cell >= 0)
+    bad(place_of(cell), ": this floor cannot be reached from that in ", place_of(maze.free_cells.front()));
   maze.hash = Hash().add(maze.canonical_text()).value();
   return maze;
 }

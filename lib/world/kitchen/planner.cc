@@ -36,8 +36,11 @@ KitchenPlanner::KitchenPlanner(const std::string& name, const KitchenTables& tab
       for (int pose = 0; pose < poses; ++pose)
         if (receptacle_in_reach(tables, pose, doors) == receptacle) steps[index(pose, doors)] = 1;
     relax(steps);
-    if (std::find(steps.begin(), steps.end(), kFar) != steps.end())
-      fail(Exit::kData, name, ": the ", kKitchenReceptacleNames[receptacle], " cannot be used from everywhere");
+    if (const auto far = std::find(steps.begin(), steps.end(), kFar); far != steps.end()) {
+      const KitchenPose& pose = tables.poses[size_t(far - steps.begin()) % tables.poses.size()];
+      fail(Exit::kData, name, ": the ", kKitchenReceptacleNames[receptacle], " cannot be used from row ", pose.row,
+           ", column ", pose.column, ", heading ", pose.heading, ", horizon ", pose.horizon);
+    }
     to_receptacle_[size_t(receptacle)] = std::make_shared<const Steps>(std::move(steps));
   }
 }

@@ -88,9 +88,24 @@ TEST(Trajectory, UnknownFieldsArePassedOver) {
 }
 
 TEST(Trajectory, RefusesWhatIsNoObject) {
-  for (const char* line :
-       {"", "x", "{", "[]", "3", "null", "\"text\"", "{\"format\":}", "{} {}", "{\"a\":\"\xff\"}", "NaN"})
+  for (const char* line : {"[]", "3", "null", "\"text\""})
     EXPECT_EQ(refused(line), "65 found " + quoted(line) + ", expected a JSON object");
+  EXPECT_EQ(refused(""), "65 found an empty line, expected a JSON object");
+  const auto no_json = [](const std::string& reason) {
+    return "65 found no JSON (" + reason + "), expected a JSON object";
+  };
+  EXPECT_EQ(refused("x"), no_json("byte 1: while parsing value - invalid literal; last read: 'x'"));
+  EXPECT_EQ(refused("NaN"), no_json("byte 1: while parsing value - invalid literal; last read: 'N'"));
+  EXPECT_EQ(refused("{"),
+            no_json("byte 2: while parsing object key - unexpected end of input; expected string literal"));
+  EXPECT_EQ(refused("{\"format\":}"),
+            no_json("byte 11: while parsing value - unexpected '}'; expected '[', '{', or a literal"));
+  EXPECT_EQ(refused("{} {}"), no_json("byte 4: while parsing value - unexpected '{'; expected end of input"));
+  EXPECT_EQ(refused("{\"a\":\"\xff\"}"),
+            no_json("byte 7: while parsing value - invalid string: ill-formed UTF-8 byte; last read: '\"\\xff'"));
+  EXPECT_EQ(refused("{\"a\":1e999}"), no_json("byte 6: number overflow parsing '1e999'"));
+  EXPECT_EQ(refused("{\"a\":1,\"b\":{\"a\":1},\"a\":2}"),
+            "65 found the name 'a' twice in one object, expected a JSON object");
   const std::string good = format_trajectory(short_trajectory());
   for (size_t size = 0; size < good.size(); ++size)
     ASSERT_TRUE(refused(good.substr(0, size)).ends_with("expected a JSON object")) << size;
@@ -101,8 +116,8 @@ TEST(Trajectory, DeepNestingIsRefusedEarly) {
   for (const char* open : {"[", "{\"a\":"}) {
     std::string deep;
     for (int i = 0; i < 1000000; ++i) deep += open;
-    EXPECT_EQ(refused(deep), "65 nested more than 8 deep: not a trajectory");
-    EXPECT_EQ(refused(with("start", deep)), "65 nested more than 8 deep: not a trajectory");
+    EXPECT_EQ(refused(deep), "65 found more than 8 levels of nesting, expected a JSON object");
+    EXPECT_EQ(refused(with("start", deep)), "65 found more than 8 levels of nesting, expected a JSON object");
   }
 }
 

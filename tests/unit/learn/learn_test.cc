@@ -173,16 +173,16 @@ TEST(Relabel, PutsTheExpertsLabels) {
 
 TEST(ResolvePairs, ByName) {
   const std::vector<PairRow> rows = {{"map2", "R-B", true, ""}, {"map1", "P-O", false, ""}};
-  EXPECT_EQ(resolve_pairs(builtin_world(), rows, false), (std::vector<EnvTask>{{1, 0}, {0, 19}}));
-  EXPECT_EQ(resolve_pairs(builtin_world(), rows, true), (std::vector<EnvTask>{{1, 0}}));
+  EXPECT_EQ(resolve_pairs(builtin_world(), rows, false, "IN"), (std::vector<EnvTask>{{1, 0}, {0, 19}}));
+  EXPECT_EQ(resolve_pairs(builtin_world(), rows, true, "IN"), (std::vector<EnvTask>{{1, 0}}));
   EXPECT_EQ(thrown([] {
-              resolve_pairs(builtin_world(), {{"map0", "R-B", true, ""}}, false);
+              resolve_pairs(builtin_world(), {{"map0", "R-B", true, "", 7}}, false, "IN");
             }),
-            "65 pairs: unknown env 'map0' (other maps?)");
+            "65 IN: line 7: found the env 'map0', expected one of the world 'gridworld', such as 'map1'");
   EXPECT_EQ(thrown([] {
-              resolve_pairs(builtin_world(), {{"map1", "R", false, ""}}, true);
+              resolve_pairs(builtin_world(), {{"map1", "R", false, ""}}, true, "metadata 'seen'");
             }),
-            "65 pairs: unknown task 'R'");
+            "65 metadata 'seen': found the task 'R', expected one of the world 'gridworld', such as 'R-B'");
 }
 
 // Reads a stream to its end; the number of trajectories.
@@ -215,8 +215,11 @@ TEST(Stream, ErrorsNameTheLine) {
   EXPECT_EQ(stream_refused(two + expert_lines({{0, 0}}, 1, 0, 2), {}),
             "65 IN: line 3: window 2, expected 1 as in the trajectories before");
   EXPECT_EQ(stream_refused(two, {}, 3), "65 IN: line 1: window 1, expected 3 as in the trajectories before");
-  EXPECT_EQ(stream_refused(two + "{\"format\":", {}), "65 IN: line 3: found '{\"format\":', expected a JSON object");
-  EXPECT_EQ(stream_refused(two + "\n" + two, {}), "65 IN: line 3: found '', expected a JSON object");
+  EXPECT_EQ(
+      stream_refused(two + "{\"format\":", {}),
+      "65 IN: line 3: found no JSON (byte 11: while parsing value - unexpected end of input; expected '[', '{', or a "
+      "literal), expected a JSON object");
+  EXPECT_EQ(stream_refused(two + "\n" + two, {}), "65 IN: line 3: found an empty line, expected a JSON object");
   std::string damaged = two;
   damaged.replace(damaged.rfind("10.99"), 5, "10.98");
   EXPECT_TRUE(stream_refused(damaged, {}).starts_with("65 IN: line 2: replay gives reward 10.99 at step "));
@@ -395,7 +398,8 @@ TEST(Model, RefusesCheckpointsThatDoNotFit) {
   EXPECT_EQ(refused([](Checkpoint& c) { c.method = "dqn"; }),
             "65 unknown method 'dqn', expected synpo, mlp, mtl, modulenet or sf");
   EXPECT_EQ(refused([](Checkpoint& c) { c.method = "mlp"; }), "65 no tensor 'policy.hidden.weight'");
-  EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }), "65 pairs: unknown env 'map9' (other maps?)");
+  EXPECT_EQ(refused([](Checkpoint& c) { c.seen[0].first = "map9"; }),
+            "65 metadata 'seen': found the env 'map9', expected one of the world 'gridworld', such as 'map1'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape.erase("basis"); }), "65 the shape has no 'basis'");
   EXPECT_EQ(refused([](Checkpoint& c) { c.shape["hidden"] = 0; }),
             "65 shape 'hidden': found 0, expected a whole number from 1 to 65536");

@@ -59,9 +59,6 @@ TEST(Maze, BlanksAtTheEndOfALineMayBeMissingOrTooMany) {
   text.insert(17 * 7 + 16, "    ");
   text.erase(17 * 5 + 10, 6);  // what is missing is floor, and the wall at its end
   EXPECT_EQ(parse_maze("m", text, "m.txt").canonical_text(), maze.canonical_text());
-  text = room();
-  text.erase(17 * 5, 16);
-  EXPECT_EQ(parse_maze("m", text, "m.txt").canonical_text(), open_maze().canonical_text());
 }
 
 std::string maze_refused(const std::string& text) {
@@ -70,7 +67,8 @@ std::string maze_refused(const std::string& text) {
 
 TEST(Maze, RefusesOtherTexts) {
   const std::string good = room();
-  EXPECT_EQ(maze_refused(""), "65 m.txt: found 0 lines, expected a maze of 16 lines of 16 characters");
+  EXPECT_EQ(maze_refused(""), "65 m.txt: found nothing, expected a maze of 16 lines of 16 characters");
+  EXPECT_EQ(maze_refused("   \n   \n"), "65 m.txt: found blanks alone, expected a maze of 16 lines of 16 characters");
   EXPECT_EQ(maze_refused(good.substr(17)), "65 m.txt: found 15 lines, expected a maze of 16 lines of 16 characters");
   EXPECT_EQ(maze_refused(good + "################\n"),
             "65 m.txt: found 17 lines, expected a maze of 16 lines of 16 characters");
@@ -81,8 +79,10 @@ TEST(Maze, RefusesOtherTexts) {
   foreign[2 * 17 + 4] = 'x';
   EXPECT_EQ(maze_refused(foreign), "65 m.txt: line 3, column 5: found 'x', expected '#' (wall), ' ' or '@' (floor)");
   foreign[2 * 17 + 4] = '\0';
-  EXPECT_EQ(maze_refused(foreign),
-            "65 m.txt: line 3, column 5: found '\\x00', expected '#' (wall), ' ' or '@' (floor)");
+  EXPECT_EQ(maze_refused(foreign), "65 m.txt: line 3, column 5: found U+0000, expected '#' (wall), ' ' or '@' (floor)");
+  std::string empty = good;
+  empty.erase(17 * 5, 16);
+  EXPECT_EQ(maze_refused(empty), "65 m.txt: line 6: found an empty line, expected 16 characters");
   for (const size_t at : {5u, 17u * 15 + 5, 17u * 5, 17u * 5 + 15}) {
     std::string hole = good;
     hole[at] = ' ';
@@ -90,10 +90,36 @@ TEST(Maze, RefusesOtherTexts) {
                                          ": found floor, expected the outer wall"));
   }
   EXPECT_EQ(maze_refused(room({cell(1, 2), cell(2, 1)})),
-            "65 m.txt: some floor cells cannot be reached from the others");
+            "65 m.txt: line 2, column 3: this floor cannot be reached from that in line 2, column 2");
   std::string full;
   for (int row = 0; row < 16; ++row) full += row == 3 ? "#@@@@@##########\n" : "################\n";
   EXPECT_EQ(maze_refused(full), "65 m.txt: found 5 floor cells, expected at least 6");
+}
+
+TEST(Maze, NamesWhatCannotBeSeen) {
+  const std::string good = room();
+  const auto with = [&](const std::string& text, size_t row, size_t column) {
+    std::string maze = good;
+    maze.replace(row * 17 + column, 1, text);
+    return maze_refused(maze);
+  };
+  const auto found = [](int line, int column, const std::string& what) {
+    return concat("65 m.txt: line ", line, ", column ", column, ": found ", what,
+                  ", expected '#' (wall), ' ' or '@' (floor)");
+  };
+  EXPECT_EQ(maze_refused("\xef\xbb\xbf" + good), found(1, 1, "a byte order mark"));
+  EXPECT_EQ(with("\xc2\xa0", 3, 4), found(4, 5, "a no-break space"));
+  EXPECT_EQ(with("\t", 3, 4), found(4, 5, "a tab"));
+  EXPECT_EQ(with("#\t", 3, 15), found(4, 17, "a tab"));
+  EXPECT_EQ(with("\xe2\x80\x8b", 3, 4), found(4, 5, "U+200B"));
+  EXPECT_EQ(with("\xc3\xa9", 3, 4), found(4, 5, "'\xc3\xa9'"));
+  // Columns are characters: the one after a block of three bytes is the next.
+  EXPECT_EQ(with("\xe2\x96\x88", 0, 0), found(1, 1, "'\xe2\x96\x88'"));
+  EXPECT_EQ(with("\xff", 3, 4), found(4, 5, "the byte \\xff"));
+  EXPECT_EQ(maze_refused("\xff\xfe#"), "65 m.txt: found UTF-16, expected plain ASCII text");
+  std::string cr = good;
+  std::replace(cr.begin(), cr.end(), '\n', '\r');
+  EXPECT_EQ(maze_refused(cr), "65 m.txt: lines end in CR alone, expected LF or CR LF");
 }
 
 TEST(Maze, FoldersAreReadInNaturalOrder) {

@@ -62,16 +62,15 @@ Kitchen::Footprint find_receptacle(const Kitchen& kitchen, int receptacle, const
   return foot;
 }
 
-bool connected(const Kitchen& kitchen) {
+// A cell of floor that cannot be reached from the first one, or the first one.
+KitchenCell cut_off_cell(const Kitchen& kitchen) {
   std::vector<bool> reached(kitchen.text.size(), false);
   const auto index = [&](int row, int column) { return size_t(row * (kitchen.columns + 1) + column); };
   std::vector<KitchenCell> stack = {kitchen.floor.front()};
   reached[index(stack[0].row, stack[0].column)] = true;
-  size_t count = 0;
   while (!stack.empty()) {
     const KitchenCell cell = stack.back();
     stack.pop_back();
-    ++count;
     for (int side = 0; side < 4; ++side) {
       const int row = cell.row + kRowStep[side], column = cell.column + kColumnStep[side];
       if (kitchen.at(row, column) != '.' || reached[index(row, column)]) continue;
@@ -79,7 +78,9 @@ bool connected(const Kitchen& kitchen) {
       stack.push_back({int16_t(row), int16_t(column)});
     }
   }
-  return count == kitchen.floor.size();
+  for (const KitchenCell& cell : kitchen.floor)
+    if (!reached[index(cell.row, cell.column)]) return cell;
+  return kitchen.floor.front();
 }
 
 }  // namespace
@@ -106,7 +107,7 @@ Kitchen parse_kitchen(const std::string& name, const std::string& text, const st
       const char c = line[size_t(column)];
       const auto place = [&] { return concat(where, ": line ", row + 1, ", column ", column + 1, ": "); };
       if (std::string_view("#.ctFMS").find(c) == std::string_view::npos)
-        fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected one of # . c t F M S");
+        fail(Exit::kData, place(), "found ", character_text(line, size_t(column)), ", expected one of # . c t F M S");
       const bool border = row == 0 || row == kitchen.rows - 1 || column == 0 || column == kitchen.columns - 1;
       if (border && c != '#')
         fail(Exit::kData, place(), "found ", quoted(std::string(1, c)), ", expected the outer wall");
@@ -115,7 +116,12 @@ Kitchen parse_kitchen(const std::string& name, const std::string& text, const st
     kitchen.text += line + '\n';
   }
   if (kitchen.floor.empty()) fail(Exit::kData, where, ": found no floor");
-  if (!connected(kitchen)) fail(Exit::kData, where, ": some floor cells cannot be reached from the others");
+  const auto place_of = [](const KitchenCell& cell) {
+    return concat("line ", cell.row + 1, ", column ", cell.column + 1);
+  };
+  const KitchenCell first = kitchen.floor.front(), cut_off = cut_off_cell(kitchen);
+  if (cut_off.row != first.row || cut_off.column != first.column)
+    fail(Exit::kData, where, ": ", place_of(cut_off), ": this floor cannot be reached from that in ", place_of(first));
   for (int i = 0; i < kKitchenReceptacles; ++i) kitchen.receptacles[size_t(i)] = find_receptacle(kitchen, i, where);
   kitchen.hash = Hash().add(kitchen.text).value();
   return kitchen;
