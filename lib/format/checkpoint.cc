@@ -27,8 +27,9 @@ int64_t whole(const SafeTensors& file, const std::string& key) {
 
 template <class T>
 T structure(const SafeTensors& file, const std::string& key, const char* expected) {
+  const std::string& text = file.meta(key);
   try {
-    return parse_json(file.meta(key)).get<T>();
+    return parse_json(text).get<T>();
   } catch (const Json::exception&) {
     fail(Exit::kData, "metadata '", key, "': expected ", expected);
   } catch (const Error& error) {

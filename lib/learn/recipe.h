@@ -7,6 +7,7 @@
 #include "learn/steps.h"
 #include "nn/adam.h"
 #include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 
@@ -27,12 +28,11 @@ struct ImitationOptions {
   double averaging = 0;  // decay of the averaged weights; 0: none
   // The losses.
   double reward_loss = 0.01, env_loss = 0.1, task_loss = 0.001;
-  // The network.
-  bool normalise_input = false, normalise_embeddings = false;
+  // The network. The world decides what of its shape is its own.
   double embedding_sd = 0;
-  double feature = 128, basis = 128, embedding = 128, hidden = 512, action_embedding = 0, head_hidden = 1024;
+  PolicyShape network;
   // Of single methods.
-  double seam = 32, dropout = 0.2, discount = 0.99, sf_loss = 0;
+  double dropout = 0.2, discount = 0.99;
 
   StepOptions step() const { return {{reward_loss, env_loss, task_loss}, dropout, discount}; }
   // What part of the schedules is over at update `update` (from 0) of `total`: nothing during the warm-up.

@@ -16,10 +16,10 @@ namespace {
 // Small but for the convolutions, which have no option.
 ImitationOptions small_options() {
   ImitationOptions options;
-  options.feature = 8;
-  options.basis = 6;
-  options.embedding = 5;
-  options.hidden = 12;
+  options.network.feature = 8;
+  options.network.basis = 6;
+  options.network.embedding = 5;
+  options.network.hidden = 12;
   options.memory = 7;
   options.fill = 4;
   options.read = 2;
@@ -30,7 +30,7 @@ ImitationOptions small_options() {
 ImitationOptions whole_trajectories() {
   ImitationOptions options = small_options();
   options.trajectories = 2;
-  options.normalise_input = 1;
+  options.network.normalise_input = true;
   return options;
 }
 
@@ -46,7 +46,7 @@ ImitationOptions single_steps() {
   options.cosine = 1;
   options.warm_up = 2;
   options.averaging = 0.99;
-  options.normalise_embeddings = 1;
+  options.network.normalise_embeddings = 1;
   return options;
 }
 
@@ -207,7 +207,7 @@ TEST(Imitation, TakesTheWeightsOfAnotherModel) {
   EXPECT_EQ(fresh.checkpoint(false).weights_hash(), checkpoint.weights_hash());
   EXPECT_EQ(fresh.updates(), 0);
   ImitationOptions wider = whole_trajectories();
-  wider.hidden = 13;
+  wider.network.hidden = 13;
   Imitation other(builtin_world(), *trained.parallel, "synpo", wider, {}, 9);
   EXPECT_EQ(thrown([&] { other.take_weights(model); }),
             "65 the checkpoint's network is not the one asked for: method or sizes differ");

@@ -319,7 +319,7 @@ TEST(SceneKitchens, RefuseWhatCannotBePlayed) {
             "features, expected some where an episode "
             "can come by");
   EXPECT_EQ(refused([](Scene& s) { std::fill(s.receptacle_distance.begin(), s.receptacle_distance.end(), -1); }),
-            "SFRIDGE");
+            "65 small, layout 0: the Fridge cannot be used from row 3, column 1, heading 0, horizon -30");
   // In layout 1 alone the Mug is out of sight.
   EXPECT_EQ(refused([](Scene& s) {
               for (size_t i = s.object_distance.size() / 2 + 2; i < s.object_distance.size(); i += 7)
@@ -432,9 +432,9 @@ TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   load_model(checkpoint, scenes);
   Scene other = small_scene(1);
   other.extractor_hash = 1;
-  EXPECT_EQ(
-      thrown([&] { load_model(checkpoint, world_of_scene(other)); }),
-      "65 the policy was trained on features of 'frames@0000000000000abc', found those of 'frames@0000000000000001'");
+  EXPECT_EQ(thrown([&] { load_model(checkpoint, world_of_scene(other)); }),
+            "65 cannot read IN: the policy was trained on features of 'frames@0000000000000abc', found those of "
+            "'frames@0000000000000001'");
   checkpoint.extractor.clear();  // as of files that don't tell
   load_model(checkpoint, world_of_scene(other));
 

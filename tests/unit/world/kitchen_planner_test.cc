@@ -168,7 +168,7 @@ TEST(KitchenPlanner, RefusesWhatCannotBeUsed) {
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), Exit::kData);
-    EXPECT_STREQ(error.what(), "RFRIDGE");
+    EXPECT_STREQ(error.what(), "ring: the Fridge cannot be used from row 1, column 0, heading 0, horizon 0");
   }
 }
 

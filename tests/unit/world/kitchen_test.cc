@@ -107,12 +107,14 @@ TEST(Kitchen, RefusesHostileText) {
   EXPECT_EQ(error(with("tt", "t@")), "k.txt: line 6, column 5: found '@', expected one of # . c t F M S");
   EXPECT_EQ(error(with("tt", std::string("t\0", 2))),
             "k.txt: line 6, column 5: found U+0000, expected one of # . c t F M S");
-  EXPECT_EQ(error(with("#..tt...##\n#..tt...", "#ccttccc##\n#ccttccc")), "KFLOOR");
+  EXPECT_EQ(error(with("#..tt...##\n#..tt...", "#ccttccc##\n#ccttccc")),
+            "k.txt: line 8, column 2: this floor cannot be reached from that in line 4, column 2");
   EXPECT_EQ(error(with("SSSc", "SScc")), "k.txt: the cells of the Sink ('S') are not one rectangle of at most 4 x 4");
   EXPECT_EQ(error(with("tt", "tS")), "k.txt: the cells of the Sink ('S') are not one rectangle of at most 4 x 4");
   EXPECT_EQ(error(with("FFcSSSc#\n#cFF", "cccSSSc#\n#ccc")), "k.txt: found no 'F', expected a Fridge");
   // A Fridge behind walls that nobody can open.
-  EXPECT_EQ(error(with("#cFFcSSSc#\n#cFFcSSSc#", "#cFF#SSSc#\n#####SSSc#")), "KFRIDGE");
+  EXPECT_EQ(error(with("#cFFcSSSc#\n#cFFcSSSc#", "#cFF#SSSc#\n#####SSSc#")),
+            "k: the Fridge cannot be used from row 3, column 1, heading 0, horizon -30");
   const Kitchen bare = parse_kitchen("bare", "#######\n#FMS..#\n#.....#\n#######\n", "bare");
   EXPECT_EQ(message_of([&] { KitchenSet({bare}); }),
             "bare: found 0 places on which an object can lie and be picked up, expected at least 7");

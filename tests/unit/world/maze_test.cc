@@ -90,7 +90,7 @@ TEST(Maze, RefusesOtherTexts) {
                                          ": found floor, expected the outer wall"));
   }
   EXPECT_EQ(maze_refused(room({cell(1, 2), cell(2, 1)})),
-            "65 m.txt: line 2, column 3: this floor cannot be reached from that in line 2, column 2");
+            "65 m.txt: line 2, column 4: this floor cannot be reached from that in line 2, column 2");
   std::string full;
   for (int row = 0; row < 16; ++row) full += row == 3 ? "#@@@@@##########\n" : "################\n";
   EXPECT_EQ(maze_refused(full), "65 m.txt: found 5 floor cells, expected at least 6");
