@@ -1,5 +1,5 @@
-// Scenes: kitchens with the features of their views, a safetensors file each (synpo-scene(5)). What the numbers mean,
-// lib/world/kitchen_scene.h says; here they are arrays whose sizes and ranges fit.
+// Scenes: kitchens with the features of their views, a safetensors file each (synpo-scene(5)). Here they are arrays
+// whose sizes and ranges fit; lib/world/kitchen/recorded_kitchens.h says what the numbers mean.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -17,7 +17,7 @@ constexpr int kSceneLimit = 65535;  // poses, layouts
 struct Scene {
   std::string env;        // the kitchen's name
   int rules = 1;          // version of the world's rules
-  std::string extractor;  // what made the features, and a hash that tells it from others of its name
+  std::string extractor;  // what made the features, and a hash that others of its name do not have
   uint64_t extractor_hash = 0;
   std::vector<int32_t> poses;                // [P, 4] row, column, heading, horizon
   std::vector<int32_t> starts;               // of the poses, ascending

@@ -30,7 +30,7 @@ std::string format_trajectory(const Trajectory& trajectory);
 
 // Throws kData with what was found and what was expected (the caller adds the line). Unknown fields are passed over.
 // Lengths must agree; actions are below kMostActions, there are at most `step_limit` steps and at least one. Whether a
-// world has them, replay() knows (learn/episode.h).
+// world has them, replay() knows (play/episode.h).
 Trajectory parse_trajectory(const std::string& line, int step_limit);
 
 }  // namespace synpo

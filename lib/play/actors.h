@@ -23,7 +23,7 @@ class Actors {
   WorldStep step(int actor, int action);
   void restart(int actor);
 
-  // What has ended since the last call.
+  // The episodes that have ended since the last call.
   Outcomes take_finished();
 
   // All that a run needs to go on; load() throws kData for what no save() wrote.

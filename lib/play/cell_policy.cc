@@ -8,7 +8,7 @@
 namespace synpo {
 namespace {
 
-// What the policy would do, as it acts by itself: by chance, or, where scores are values, the best action.
+// The policy's choice, as it acts by itself: by chance, or, where scores are values, the best action.
 ActionRates rates_of(const float* scores, int actions, bool values) {
   ActionRates rates(size_t(actions), 0);
   if (!values) {

@@ -1,4 +1,4 @@
-// What a policy would do in states of one's choice, such as wherever the agent stood.
+// A policy's choices in states that are asked about, such as wherever the agent might stand.
 #pragma once
 #include <vector>
 

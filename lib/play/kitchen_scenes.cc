@@ -18,7 +18,7 @@ static_assert(kSceneObjects == kKitchenObjects && kSceneReceptacles == kKitchenR
               kSceneDoors == kDoorStates && kSceneMoves == kKitchenMoves);
 static_assert(kSceneFeatures == kViewFeatures && kSceneLimit == kMaxKitchenPoses);
 
-// What is in sight of distances [poses, things].
+// The things in sight, from distances [poses, things].
 KitchenSeenLists seen_lists(const int32_t* distances, size_t poses, size_t things) {
   KitchenSeenLists lists;
   lists.begin.reserve(poses + 1);
@@ -105,10 +105,10 @@ class Rows {
 
 }  // namespace
 
-SceneKitchen to_kitchen(Scene scene) {
+RecordedKitchen to_kitchen(Scene scene) {
   if (scene.rules != kKitchenRules)
     fail(Exit::kData, "rules version ", scene.rules, ", this build has ", kKitchenRules);
-  SceneKitchen kitchen;
+  RecordedKitchen kitchen;
   kitchen.name = scene.env;
   kitchen.hash = scene.hash();
   kitchen.extractor = scene.extractor + '@' + hex(scene.extractor_hash);
@@ -152,7 +152,7 @@ SceneKitchen to_kitchen(Scene scene) {
   return kitchen;
 }
 
-std::vector<SceneKitchen> read_kitchens(const std::string& folder) {
+std::vector<RecordedKitchen> read_kitchens(const std::string& folder) {
   namespace fs = std::filesystem;
   std::error_code error;
   std::vector<std::string> names;
@@ -161,7 +161,7 @@ std::vector<SceneKitchen> read_kitchens(const std::string& folder) {
   if (error) fail(Exit::kNoInput, "cannot read the folder '", folder, "': ", error.message());
   if (names.empty()) fail(Exit::kNoInput, "no *", kSceneEnding, " in the folder '", folder, "'");
   std::sort(names.begin(), names.end(), natural_less);
-  std::vector<SceneKitchen> kitchens;
+  std::vector<RecordedKitchen> kitchens;
   for (const std::string& name : names) {
     const std::string path = (fs::path(folder) / name).string();
     Input input(path);
@@ -214,7 +214,7 @@ Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std
         now.hand = uint8_t(drawn[size_t(i)] % kHands);
         now.slots = layouts[layout];
         if (now.hand != kEmptyHand) now.slots[now.hand] = kNoSlot;
-        features.draw(world.scene(env), world.frame(env, pack(now)), &pictures[size_t(i) * features.picture_bytes]);
+        features.draw(world.solids(env), world.frame(env, pack(now)), &pictures[size_t(i) * features.picture_bytes]);
       });
       for (size_t i = 0; i < drawn.size(); ++i)
         scene.view[first + drawn[i]] = rows.of(&pictures[i * features.picture_bytes]);

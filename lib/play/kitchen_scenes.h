@@ -1,4 +1,4 @@
-// Scenes (format/scene.h) as kitchens (world/kitchen_scene.h), and scenes of kitchens that have a plan.
+// Scenes (format/scene.h) as kitchens (world/kitchen/recorded_kitchens.h), and scenes of kitchens that have a plan.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -17,16 +17,16 @@ namespace synpo {
 constexpr const char* kSceneEnding = ".scene.safetensors";
 
 // Throws kData for a scene of other rules.
-SceneKitchen to_kitchen(Scene scene);
+RecordedKitchen to_kitchen(Scene scene);
 // Every scene of a folder, by file names in natural order. Throws kNoInput when there is none.
-std::vector<SceneKitchen> read_kitchens(const std::string& folder);
+std::vector<RecordedKitchen> read_kitchens(const std::string& folder);
 
 // Features in two steps, so that those of equal pictures are computed once.
 struct PictureFeatures {
   std::string name;  // of the extractor
   uint64_t hash;
   size_t picture_bytes;
-  std::function<void(const KitchenScene& scene, const KitchenFrame& frame, uint8_t* picture)>
+  std::function<void(const KitchenSolids& solids, const KitchenFrame& frame, uint8_t* picture)>
       draw;  // from several threads
   // The features [count, kViewFeatures] of pictures [count, picture_bytes].
   std::function<void(const uint8_t* pictures, int count, float* features)> extract;

@@ -6,7 +6,7 @@
 
 namespace synpo {
 
-// What came of some episodes: sums over them.
+// Results of some episodes: sums over them.
 struct Outcomes {
   int64_t episodes = 0, successes = 0, wrong = 0, timeouts = 0, reward_cents = 0, length = 0;
   void add(const Outcomes& other);

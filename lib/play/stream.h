@@ -1,4 +1,4 @@
-// The stream of trajectories that a trainer reads: parsed, replayed, held against the seen set, hashed.
+// The stream of trajectories that a trainer reads: parsed, replayed, compared with the seen set, hashed.
 #pragma once
 #include <optional>
 #include <string>

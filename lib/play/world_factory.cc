@@ -25,7 +25,7 @@ auto parse_all(const std::vector<Environment>& environments, Parse parse) {
 
 std::unique_ptr<World> choose_scenes(const std::vector<Environment>& environments, const World* source) {
   if (!source) fail(Exit::kUsage, kNoSource, "the kitchens lie in files of their own");
-  const SceneKitchens* scenes = dynamic_cast<const SceneKitchens*>(source);
+  const RecordedKitchens* scenes = dynamic_cast<const RecordedKitchens*>(source);
   if (!scenes)
     fail(Exit::kUsage, kOtherSource, "the kitchens lie in files of their own: found the built-in ",
          quoted(source->name()));
@@ -39,12 +39,12 @@ std::unique_ptr<World> choose_scenes(const std::vector<Environment>& environment
            hex(env.hash));
     chosen.push_back(found);
   }
-  return std::make_unique<SceneKitchens>(*scenes, chosen);
+  return std::make_unique<RecordedKitchens>(*scenes, chosen);
 }
 
 std::unique_ptr<World> open_kitchens(const std::string& name) {
   static const std::string scenes = "kitchen:";
-  if (name.starts_with(scenes)) return std::make_unique<SceneKitchens>(read_kitchens(name.substr(scenes.size())));
+  if (name.starts_with(scenes)) return std::make_unique<RecordedKitchens>(read_kitchens(name.substr(scenes.size())));
   return std::make_unique<KitchenSet>();
 }
 

@@ -1,4 +1,4 @@
-// What an observation is made of: a world says it, and a policy's encoder is chosen and sized by it.
+// The make-up of an observation: a world says it, and a policy's encoder is chosen and sized by it.
 #pragma once
 #include <cstddef>
 #include <cstdint>

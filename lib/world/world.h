@@ -1,5 +1,5 @@
-// A world as the rooms behind this one see it: environments and tasks, rules, an expert, and what the agent sees.
-// GridWorld (grid_set.h) and the kitchens (kitchen_set.h, kitchen_scene.h) are two.
+// A world as the other modules see it: environments and tasks, rules, an expert, and what the agent sees. GridWorld
+// (grid/grid_set.h) and the kitchens (kitchen/kitchen_set.h, kitchen/recorded_kitchens.h) are two.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -20,7 +20,7 @@ struct EnvTask {
   bool operator==(const EnvTask&) const = default;
 };
 
-// What the bytes mean, the world alone knows; from World::state_bytes() on they are zero.
+// The world alone knows what the bytes mean; from World::state_bytes() on they are zero.
 struct WorldState {
   static constexpr size_t kMostBytes = 62;
   std::array<uint8_t, kMostBytes> bytes = {};
@@ -44,7 +44,7 @@ struct StateHistory {
   const WorldState& now() const { return states.back(); }
 };
 
-// What a state asks of a policy.
+// The kinds of steps, by what a state asks of a policy.
 enum class StepKind : uint8_t {
   kMove,    // to move
   kPick,    // to take or put the right thing
@@ -86,8 +86,8 @@ class World {
   virtual bool at_choice(EnvTask pair, const WorldState& state) const = 0;
 
   virtual const ObservationSpec& observation_spec() const = 0;
-  // What made the features, "name@hash": a policy goes with features of one extractor alone. Empty where observations
-  // are pictures.
+  // The extractor that made the features, "name@hash": a policy goes with features of one extractor alone. Empty where
+  // observations are pictures.
   virtual std::string extractor() const { return ""; }
   // Writes observation_spec().bytes(). `window` is how far the agent sees, in the world's own measure, as trajectories
   // and checkpoints carry it; a world in which that never changes passes over it.
@@ -96,7 +96,7 @@ class World {
   virtual StartPlaces start_places(int env, const WorldState& start) const = 0;
   // Throws kData, naming the field, for what start_places() never gives.
   virtual WorldState start_state(int env, const StartPlaces& places) const = 0;
-  // Whether this can be a state of a running episode: what comes from a file may be none.
+  // Whether this can be a state of a running episode: what comes from a file may be no such state.
   virtual bool valid(EnvTask pair, const WorldState& state) const = 0;
 
   size_t observation_size() const { return observation_spec().bytes(); }

@@ -41,7 +41,7 @@ int features(int argc, char** argv) {
   pictures.name = net.name();
   pictures.hash = net.hash();
   pictures.picture_bytes = size_t(3) * FeatureNet::kSide * FeatureNet::kSide;
-  pictures.draw = [](const KitchenScene& scene, const KitchenFrame& frame, uint8_t* picture) {
+  pictures.draw = [](const KitchenSolids& scene, const KitchenFrame& frame, uint8_t* picture) {
     render(scene, frame, FeatureNet::kSide, FeatureNet::kSide, picture);
   };
   pictures.extract = [&](const uint8_t* all, int count, float* made) { net.extract(all, count, made); };

@@ -92,18 +92,18 @@ void draw_objects(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen,
                   int wanted) {
   const auto box_of = [&](int object) {
     const int cell = frame.objects[size_t(object)];
-    return object_box(place, plan_cell(kitchen, cell / kSceneStride, cell % kSceneStride));
+    return object_box(place, plan_cell(kitchen, cell / kRayStride, cell % kRayStride));
   };
   if (frame.objects[size_t(wanted)] >= 0) draw_wanted(canvas, box_of(wanted), wanted);
   for (int i = 0; i < kKitchenObjects; ++i)
     if (frame.objects[size_t(i)] >= 0) draw_object(canvas, box_of(i), i);
 }
 
-void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame& frame) {
+void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenSolids& solids, const KitchenFrame& frame) {
   constexpr int kFine = 2;  // rays a pixel, each way
   const int width = kFine * box.width;
   std::vector<uint8_t> fine(size_t(width) * size_t(kFine * box.height) * 3), rgb;
-  render(scene, frame, width, kFine * box.height, fine.data());
+  render(solids, frame, width, kFine * box.height, fine.data());
   for (int y = 0; y < box.height; ++y)
     for (int x = 0; x < box.width; ++x)
       for (int channel = 0; channel < 3; ++channel) {
@@ -116,9 +116,9 @@ void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene
   canvas.picture(box, rgb.data());
 }
 
-void draw_small_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame* frame) {
+void draw_small_seen(Canvas& canvas, const Box& box, const KitchenSolids& solids, const KitchenFrame* frame) {
   std::array<uint8_t, kSmallView* kSmallView* 3> rgb = {};
-  if (frame) render_small(scene, *frame, rgb.data());
+  if (frame) render_small(solids, *frame, rgb.data());
   const PlanGrid place = {box.x, box.y, box.width / kSmallView, kSmallView};
   for (int at = 0; at < kSmallView * kSmallView; ++at) {
     const uint8_t* pixel = rgb.data() + 3 * at;

@@ -18,9 +18,9 @@ Box object_box(const PlanGrid& place, int cell);
 Box agent_box(const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& pose);
 
 // Draws what the agent sees, smooth and of any size.
-void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame& frame);
+void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenSolids& solids, const KitchenFrame& frame);
 // Draws the picture of kSmallView x kSmallView pixels that features are made of; nullptr: there is none, all black. The
 // sides are multiples of kSmallView.
-void draw_small_seen(Canvas& canvas, const Box& box, const KitchenScene& scene, const KitchenFrame* frame);
+void draw_small_seen(Canvas& canvas, const Box& box, const KitchenSolids& solids, const KitchenFrame* frame);
 
 }  // namespace synpo

@@ -10,7 +10,7 @@
 namespace synpo {
 
 void KitchenFace::draw_seen(Canvas& canvas, const Box& box, const Film& film, int moment) const {
-  draw_kitchen_seen(canvas, box, set_.scene(film.pair.env), frame(film, moment));
+  draw_kitchen_seen(canvas, box, set_.solids(film.pair.env), frame(film, moment));
 }
 
 ViewPanels KitchenFace::view_panels(const Film&) const {
@@ -42,7 +42,7 @@ void KitchenFace::draw_moment(Canvas& canvas, const PlanGrid& place, const Film&
 
 void KitchenFace::draw_input(Canvas& canvas, const Box& box, const Film& film, int moment) const {
   const KitchenFrame seen = moment < 0 ? KitchenFrame() : frame(film, moment);
-  draw_small_seen(canvas, box, set_.scene(film.pair.env), moment < 0 ? nullptr : &seen);
+  draw_small_seen(canvas, box, set_.solids(film.pair.env), moment < 0 ? nullptr : &seen);
 }
 
 std::vector<KeyEntry> KitchenFace::view_key(const Film& film) const {

@@ -84,7 +84,7 @@ Rgb colour_of_end(const Film& film, int i) { return film.results[size_t(i)].wron
 // Where it lay at the start.
 Box KitchenFace::object_place(const PlanGrid& place, const Film& film, int object) const {
   const int cell = frame(film, 0).objects[size_t(object)];
-  return object_box(place, plan_cell(kitchen(film), cell / kSceneStride, cell % kSceneStride));
+  return object_box(place, plan_cell(kitchen(film), cell / kRayStride, cell % kRayStride));
 }
 
 Sign KitchenFace::event_sign(const Film& film, int i) const {

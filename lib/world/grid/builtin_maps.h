@@ -1,4 +1,4 @@
-// The text files of lib/world/maps, turned into data by the Makefile.
+// The text files of lib/world/grid/maps, turned into data by the Makefile.
 #pragma once
 #include <vector>
 

@@ -24,7 +24,7 @@ constexpr uint8_t kPicked = 255;  // in place of the cell of a treasure that is 
 enum GridAction : uint8_t { kUp, kDown, kLeft, kRight, kPick };
 extern const char* const kGridActionNames[kGridActions];
 
-// What of a state can be seen: one picture's worth.
+// The part of a state that can be seen: one picture's worth.
 struct GridFrame {
   uint8_t agent;
   std::array<uint8_t, kTreasures> treasures;  // cell, or kPicked

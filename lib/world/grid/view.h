@@ -1,4 +1,4 @@
-// What the agent sees: an RGB picture of 16 x 16 pixels.
+// The agent's view: an RGB picture of 16 x 16 pixels.
 //
 // Cells outside the window (|row difference| and |column difference| at most `radius`) are black, but treasures not yet
 // picked are drawn wherever they are. Inside: wall or floor. The agent is drawn over whatever lies in its cell. Radius

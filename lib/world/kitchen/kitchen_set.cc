@@ -5,7 +5,7 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "world/kitchen/plan.h"
+#include "world/kitchen/builtin_kitchens.h"
 
 namespace synpo {
 
@@ -31,13 +31,13 @@ KitchenFrame KitchenSet::frame(int env, const WorldState& state) const {
   for (size_t i = 0; i < kKitchenObjects; ++i) {
     if (at.slots[i] == kNoSlot) continue;
     const KitchenCell& slot = all.slots[at.slots[i]];
-    frame.objects[i] = int16_t(scene_cell(slot.row, slot.column));
+    frame.objects[i] = int16_t(ray_cell(slot.row, slot.column));
   }
   return frame;
 }
 
 void KitchenSet::write_view(int env, const KitchenState& state, float* features) const {
-  std::memcpy(features, view_features(scene(env), frame(env, pack(state))), kViewFeatures * sizeof(float));
+  std::memcpy(features, view_features(solids(env), frame(env, pack(state))), kViewFeatures * sizeof(float));
 }
 
 void KitchenSet::place_objects(int env, const Places& places, KitchenState& state) const {

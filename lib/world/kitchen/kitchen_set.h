@@ -21,23 +21,23 @@ class KitchenSet : public KitchenWorld {
   WorldState reset(int env, Random& random) const override;
   std::string extractor() const override;
 
-  const KitchenScene& scene(int env) const { return plans_[size_t(env)]->scene; }
-  const KitchenTables& tables(int env) const { return plans_[size_t(env)]->room.tables; }
-  const KitchenPlanner& planner(int env) const { return plans_[size_t(env)]->room.planner; }
-  // What of a state can be seen.
+  const KitchenSolids& solids(int env) const { return plans_[size_t(env)]->solids; }
+  const KitchenTables& tables(int env) const { return plans_[size_t(env)]->planned.tables; }
+  const KitchenPlanner& planner(int env) const { return plans_[size_t(env)]->planned.planner; }
+  // The part of a state that can be seen.
   KitchenFrame frame(int env, const WorldState& state) const;
 
  protected:
   int layouts(int) const override { return 1; }
-  const Room& room(int env, int) const override { return plans_[size_t(env)]->room; }
+  const PlannedLayout& planned(int env, int) const override { return plans_[size_t(env)]->planned; }
   void write_view(int env, const KitchenState& state, float* features) const override;
   void place_objects(int env, const Places& places, KitchenState& state) const override;
 
  private:
   struct Plan {
-    explicit Plan(const Kitchen& kitchen) : scene(kitchen), room(kitchen.name, kitchen_tables(kitchen, scene)) {}
-    KitchenScene scene;
-    Room room;
+    explicit Plan(const Kitchen& kitchen) : solids(kitchen), planned(kitchen.name, kitchen_tables(kitchen, solids)) {}
+    KitchenSolids solids;
+    PlannedLayout planned;
   };
   std::vector<std::unique_ptr<const Plan>> plans_;
 };

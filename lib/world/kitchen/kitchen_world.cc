@@ -67,25 +67,25 @@ const std::vector<std::string>& KitchenWorld::action_names() const {
 
 WorldStep KitchenWorld::step(EnvTask pair, WorldState& state, int action) const {
   KitchenState at = unpack(state);
-  const WorldStep step = kitchen_step(room_of(pair.env, at).tables, kitchen_task(pair.task), at, action);
+  const WorldStep step = kitchen_step(planned_for(pair.env, at).tables, kitchen_task(pair.task), at, action);
   state = pack(at);
   return step;
 }
 
 int KitchenWorld::expert(EnvTask pair, const WorldState& state) const {
   const KitchenState at = unpack(state);
-  return room_of(pair.env, at).planner.action(kitchen_task(pair.task), at);
+  return planned_for(pair.env, at).planner.action(kitchen_task(pair.task), at);
 }
 
 void KitchenWorld::action_values(EnvTask pair, const WorldState& state, int* cents) const {
   const KitchenState at = unpack(state);
-  const auto values = room_of(pair.env, at).planner.q_cents(kitchen_task(pair.task), at);
+  const auto values = planned_for(pair.env, at).planner.q_cents(kitchen_task(pair.task), at);
   std::copy(values.begin(), values.end(), cents);
 }
 
 bool KitchenWorld::at_choice(EnvTask pair, const WorldState& state) const {
   const KitchenState at = unpack(state);
-  const KitchenTables& tables = room_of(pair.env, at).tables;
+  const KitchenTables& tables = planned_for(pair.env, at).tables;
   if (at.hand == kEmptyHand) return object_in_reach(tables, at.pose, at.doors, at.slots) >= 0;
   return receptacle_in_reach(tables, at.pose, at.doors) >= 0;
 }
@@ -107,7 +107,7 @@ void KitchenWorld::observe(int env, const StateHistory& history, int, uint8_t* o
 
 StartPlaces KitchenWorld::start_places(int env, const WorldState& start) const {
   const KitchenState at = unpack(start);
-  const KitchenTables& tables = room_of(env, at).tables;
+  const KitchenTables& tables = planned_for(env, at).tables;
   const KitchenPose& pose = tables.poses[at.pose];
   StartPlaces places = {{kAgentField, {pose.row, pose.column}}, {kViewField, {pose.heading, pose.horizon}}};
   for (size_t i = 0; i < kKitchenObjects; ++i) {
@@ -119,7 +119,7 @@ StartPlaces KitchenWorld::start_places(int env, const WorldState& start) const {
 
 WorldState KitchenWorld::start_state(int env, const StartPlaces& places) const {
   KitchenState state;
-  state.pose = start_pose(room(env, 0).tables, places);
+  state.pose = start_pose(planned(env, 0).tables, places);
   Places objects;
   for (size_t i = 0; i < kKitchenObjects; ++i) objects[i] = field(places, kKitchenObjectNames[i]);
   place_objects(env, objects, state);
@@ -130,7 +130,8 @@ WorldState KitchenWorld::start_state(int env, const StartPlaces& places) const {
 
 bool KitchenWorld::valid(EnvTask pair, const WorldState& state) const {
   const KitchenState at = unpack(state);
-  return at.layout < layouts(pair.env) && kitchen_valid(room_of(pair.env, at).tables, kitchen_task(pair.task), state);
+  return at.layout < layouts(pair.env) &&
+         kitchen_valid(planned_for(pair.env, at).tables, kitchen_task(pair.task), state);
 }
 
 }  // namespace synpo

@@ -1,5 +1,5 @@
 // Kitchens as a world: 21 tasks, the rules over tables, their expert, and the layout of observations and starts. Where
-// tables and features come from, KitchenSet (plans) and SceneKitchens (files) say.
+// tables and features come from, KitchenSet (plans) and RecordedKitchens (files) say.
 #pragma once
 #include <array>
 #include <string>
@@ -37,16 +37,16 @@ class KitchenWorld : public World {
   bool valid(EnvTask pair, const WorldState& state) const override;
 
  protected:
-  // In one place in memory, as the planner holds on to the tables.
-  struct Room {
-    Room(const std::string& name, KitchenTables all) : tables(std::move(all)), planner(name, tables) {}
-    Room(const Room&) = delete;
+  // The tables of a layout and the planner over them, in one place in memory as it holds on to them.
+  struct PlannedLayout {
+    PlannedLayout(const std::string& name, KitchenTables all) : tables(std::move(all)), planner(name, tables) {}
+    PlannedLayout(const PlannedLayout&) = delete;
     KitchenTables tables;
     KitchenPlanner planner;
   };
 
   virtual int layouts(int env) const = 0;
-  virtual const Room& room(int env, int layout) const = 0;
+  virtual const PlannedLayout& planned(int env, int layout) const = 0;
   // Writes the features [kViewFeatures] of what is seen of a state.
   virtual void write_view(int env, const KitchenState& state, float* features) const = 0;
   // Layout and slots of the objects of a start, which lie at these rows and columns. Throws kData where no episode
@@ -58,7 +58,7 @@ class KitchenWorld : public World {
   void add_environment(const Environment& environment);
 
  private:
-  const Room& room_of(int env, const KitchenState& state) const { return room(env, state.layout); }
+  const PlannedLayout& planned_for(int env, const KitchenState& state) const { return planned(env, state.layout); }
 
   std::vector<Environment> environments_;
 };

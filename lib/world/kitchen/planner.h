@@ -24,7 +24,7 @@ class KitchenPlanner {
   // Whether there is a way to success from here.
   bool has_plan(KitchenTask task, const KitchenState& state) const;
   // Steps of the expert's episode from here to success. This and the next throw kInternal where objects lie so that
-  // there is none, which kitchen_tables() and SceneKitchens exclude.
+  // there is none, which kitchen_tables() and RecordedKitchens exclude.
   int steps_to_success(KitchenTask task, const KitchenState& state) const;
   // The best action; ties go to the first in the order of the actions.
   int action(KitchenTask task, const KitchenState& state) const;

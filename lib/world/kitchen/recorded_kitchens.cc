@@ -42,32 +42,33 @@ void check_layouts(const std::string& name, const std::vector<KitchenTables>& la
 
 }  // namespace
 
-SceneKitchens::Scene::Scene(SceneKitchen from) : kitchen(std::move(from)) {
-  std::vector<KitchenTables> layouts = std::move(kitchen.layouts);
+RecordedKitchens::Prepared::Prepared(RecordedKitchen from) : kitchen(std::move(from)) {
+  std::vector<KitchenTables> tables = std::move(kitchen.layouts);
   kitchen.layouts.clear();
-  check_poses(kitchen.name, layouts.at(0).poses);
-  check_layouts(kitchen.name, layouts);
-  for (size_t i = 0; i < layouts.size(); ++i) {
-    rooms.push_back(std::make_unique<const Room>(concat(kitchen.name, ", layout ", i), std::move(layouts[i])));
-    check_room(int(i));
+  check_poses(kitchen.name, tables.at(0).poses);
+  check_layouts(kitchen.name, tables);
+  for (size_t i = 0; i < tables.size(); ++i) {
+    layouts.push_back(
+        std::make_unique<const PlannedLayout>(concat(kitchen.name, ", layout ", i), std::move(tables[i])));
+    check_layout(int(i));
   }
 }
 
-int32_t SceneKitchens::Scene::row_of(int layout, int doors, int pose, int hand) const {
-  const size_t poses = rooms[0]->tables.poses.size();
+int32_t RecordedKitchens::Prepared::row_of(int layout, int doors, int pose, int hand) const {
+  const size_t poses = layouts[0]->tables.poses.size();
   return kitchen.view[((size_t(layout) * kDoorStates + size_t(doors)) * poses + size_t(pose)) * kHands + size_t(hand)];
 }
 
-void SceneKitchens::Scene::check_room(int layout) const {
-  const Room& room = *rooms[size_t(layout)];
-  const std::vector<bool> reached = kitchen_reachable(room.tables, kOwnSlots);
-  const int poses = room.tables.pose_count();
+void RecordedKitchens::Prepared::check_layout(int layout) const {
+  const PlannedLayout& planned = *layouts[size_t(layout)];
+  const std::vector<bool> reached = kitchen_reachable(planned.tables, kOwnSlots);
+  const int poses = planned.tables.pose_count();
   KitchenState state;
   state.slots = kOwnSlots;
   for (int doors = 0; doors < kDoorStates; ++doors)
     for (int pose = 0; pose < poses; ++pose) {
       const auto where = [&] {
-        return concat(kitchen.name, ", layout ", layout, ": from ", text_of(room.tables.poses[size_t(pose)]),
+        return concat(kitchen.name, ", layout ", layout, ": from ", text_of(planned.tables.poses[size_t(pose)]),
                       ", doors ", doors);
       };
       const size_t first = (size_t(doors) * size_t(poses) + size_t(pose)) * kHands;
@@ -79,29 +80,29 @@ void SceneKitchens::Scene::check_room(int layout) const {
       state.pose = uint16_t(pose);
       state.doors = uint8_t(doors);
       for (int object = 0; object < kKitchenObjects; ++object)
-        if (!room.planner.has_plan({object, kSink}, state))
+        if (!planned.planner.has_plan({object, kSink}, state))
           fail(Exit::kData, where(), ": the ", kKitchenObjectNames[object], " cannot be picked up");
     }
 }
 
-SceneKitchens::SceneKitchens(std::vector<SceneKitchen> kitchens) {
-  for (SceneKitchen& kitchen : kitchens) {
+RecordedKitchens::RecordedKitchens(std::vector<RecordedKitchen> kitchens) {
+  for (RecordedKitchen& kitchen : kitchens) {
     add_environment({kitchen.name, kitchen.hash, ""});
     if (!all_.empty() && kitchen.extractor != extractor())
       fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ",
            quoted(extractor()), " as of ", environments()[0].name);
-    all_.push_back(std::make_shared<const Scene>(std::move(kitchen)));
+    all_.push_back(std::make_shared<const Prepared>(std::move(kitchen)));
   }
 }
 
-SceneKitchens::SceneKitchens(const SceneKitchens& from, const std::vector<int>& envs) {
+RecordedKitchens::RecordedKitchens(const RecordedKitchens& from, const std::vector<int>& envs) {
   for (const int env : envs) {
     add_environment(from.environments()[size_t(env)]);
     all_.push_back(from.all_[size_t(env)]);
   }
 }
 
-WorldState SceneKitchens::reset(int env, Random& random) const {
+WorldState RecordedKitchens::reset(int env, Random& random) const {
   KitchenState state;
   state.layout = uint16_t(random.below(uint32_t(layouts(env))));
   const std::vector<uint16_t>& starts = tables(env, 0).start_poses;
@@ -110,28 +111,28 @@ WorldState SceneKitchens::reset(int env, Random& random) const {
   return pack(state);
 }
 
-bool SceneKitchens::valid(EnvTask pair, const WorldState& state) const {
+bool RecordedKitchens::valid(EnvTask pair, const WorldState& state) const {
   const std::array<uint8_t, kKitchenObjects> slots = unpack(state).slots;
   for (size_t i = 0; i < kKitchenObjects; ++i)
     if (slots[i] != i && slots[i] != kNoSlot) return false;
   return KitchenWorld::valid(pair, state);
 }
 
-void SceneKitchens::write_view(int env, const KitchenState& state, float* features) const {
-  const Scene& scene = *all_[size_t(env)];
-  const int32_t row = scene.row_of(state.layout, state.doors, state.pose, state.hand);
-  if (row < 0) {  // behind the end of an episode
+void RecordedKitchens::write_view(int env, const KitchenState& state, float* features) const {
+  const Prepared& recorded = *all_[size_t(env)];
+  const int32_t row = recorded.row_of(state.layout, state.doors, state.pose, state.hand);
+  if (row < 0) {  // after the end of an episode
     std::fill_n(features, kViewFeatures, 0.0f);
-  } else if (scene.kitchen.halves) {
-    const Half* halves = reinterpret_cast<const Half*>(scene.kitchen.features.data()) + size_t(row) * kViewFeatures;
+  } else if (recorded.kitchen.halves) {
+    const Half* halves = reinterpret_cast<const Half*>(recorded.kitchen.features.data()) + size_t(row) * kViewFeatures;
     for (int i = 0; i < kViewFeatures; ++i) features[i] = to_float(halves[i]);
   } else {
-    std::memcpy(features, scene.kitchen.features.data() + size_t(row) * kViewFeatures * sizeof(float),
+    std::memcpy(features, recorded.kitchen.features.data() + size_t(row) * kViewFeatures * sizeof(float),
                 kViewFeatures * sizeof(float));
   }
 }
 
-void SceneKitchens::place_objects(int env, const Places& places, KitchenState& state) const {
+void RecordedKitchens::place_objects(int env, const Places& places, KitchenState& state) const {
   const auto lies = [&](int layout, size_t object) {
     const KitchenCell& cell = tables(env, layout).slots[object];
     return cell.row == places[object].first && cell.column == places[object].second;

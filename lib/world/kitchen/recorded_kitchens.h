@@ -9,7 +9,7 @@
 
 namespace synpo {
 
-struct SceneKitchen {
+struct RecordedKitchen {
   std::string name;
   uint64_t hash = 0;
   std::string extractor;               // World::extractor()
@@ -21,38 +21,40 @@ struct SceneKitchen {
   std::string features;  // [rows, kViewFeatures], as in memory
 };
 
-class SceneKitchens : public KitchenWorld {
+class RecordedKitchens : public KitchenWorld {
  public:
   // Tables and rows are in range. Throws kData for two kitchens of one name or of different extractors, poses or
   // layouts that are alike, an object or a receptacle that cannot be used from everywhere, and a view that an episode
   // comes by and that has no features.
-  explicit SceneKitchens(std::vector<SceneKitchen> kitchens);
+  explicit RecordedKitchens(std::vector<RecordedKitchen> kitchens);
   // Some of the environments of another one, in this order; the features are shared.
-  SceneKitchens(const SceneKitchens& from, const std::vector<int>& envs);
+  RecordedKitchens(const RecordedKitchens& from, const std::vector<int>& envs);
 
   // A layout and a start pose, all alike likely; doors closed, hand empty.
   WorldState reset(int env, Random& random) const override;
   std::string extractor() const override { return all_.front()->kitchen.extractor; }
   bool valid(EnvTask pair, const WorldState& state) const override;
 
-  const KitchenTables& tables(int env, int layout) const { return room(env, layout).tables; }
-  const KitchenPlanner& planner(int env, int layout) const { return room(env, layout).planner; }
+  const KitchenTables& tables(int env, int layout) const { return planned(env, layout).tables; }
+  const KitchenPlanner& planner(int env, int layout) const { return planned(env, layout).planner; }
 
  protected:
-  int layouts(int env) const override { return int(all_[size_t(env)]->rooms.size()); }
-  const Room& room(int env, int layout) const override { return *all_[size_t(env)]->rooms[size_t(layout)]; }
+  int layouts(int env) const override { return int(all_[size_t(env)]->layouts.size()); }
+  const PlannedLayout& planned(int env, int layout) const override {
+    return *all_[size_t(env)]->layouts[size_t(layout)];
+  }
   void write_view(int env, const KitchenState& state, float* features) const override;
   void place_objects(int env, const Places& places, KitchenState& state) const override;
 
  private:
-  struct Scene {
-    explicit Scene(SceneKitchen from);
-    void check_room(int layout) const;
+  struct Prepared {
+    explicit Prepared(RecordedKitchen from);
+    void check_layout(int layout) const;
     int32_t row_of(int layout, int doors, int pose, int hand) const;
-    SceneKitchen kitchen;  // without the layouts
-    std::vector<std::unique_ptr<const Room>> rooms;
+    RecordedKitchen kitchen;  // without the layouts
+    std::vector<std::unique_ptr<const PlannedLayout>> layouts;
   };
-  std::vector<std::shared_ptr<const Scene>> all_;
+  std::vector<std::shared_ptr<const Prepared>> all_;
 };
 
 }  // namespace synpo

@@ -37,7 +37,8 @@ struct KitchenState {
   uint8_t hand = kEmptyHand;
   std::array<uint8_t, kKitchenObjects> slots = {};  // of the objects
   uint16_t steps = 0;
-  uint16_t layout = 0;  // of those that a kitchen from a file has (kitchen_scene.h); tables and slots are that layout's
+  uint16_t layout =
+      0;  // of those that a kitchen from a file has (recorded_kitchens.h); tables and slots are that layout's
   bool operator==(const KitchenState&) const = default;
 };
 

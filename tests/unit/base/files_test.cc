@@ -241,5 +241,22 @@ TEST(Text, FaultOfName) {
   EXPECT_EQ(fault_of_name("\x7f"), "found a control character at byte 1 of the name (\\x7f), expected UTF-8 text");
 }
 
+// Of the tests themselves: one that ends must not take another's files along.
+TEST(TemporaryFolder, TwoAtATimeAreApart) {
+  const TemporaryFolder outer;
+  std::string gone;
+  outer.file("kept", "outer");
+  {
+    const TemporaryFolder inner;
+    gone = inner.path();
+    EXPECT_NE(inner.path(), outer.path());
+    EXPECT_EQ(inner.files(), 0u);
+    inner.file("kept", "inner");
+    EXPECT_EQ(contents(outer.file("kept")), "outer");
+  }
+  EXPECT_FALSE(std::filesystem::exists(gone));
+  EXPECT_EQ(contents(outer.file("kept")), "outer");
+}
+
 }  // namespace
 }  // namespace synpo

@@ -12,7 +12,7 @@
 #include "draw/terminal/terminal.h"
 #include "helpers/faces.h"
 #include "helpers/font.h"
-#include "world/kitchen/plan.h"
+#include "world/kitchen/builtin_kitchens.h"
 
 namespace synpo {
 namespace {
@@ -122,7 +122,7 @@ TEST(KitchenMoment, ObjectsAndAgentLieWhereTheyAre) {
   kitchen_face().draw_moment(canvas, place, play_film(small_world(), {0, 0}, kitchen_start(), {}, 0), 0);
   for (int i = 0; i < kKitchenObjects; ++i) {
     const int cell = frame.objects[size_t(i)];
-    const Point centre = place.centre(plan_cell(kitchen, cell / kSceneStride, cell % kSceneStride));
+    const Point centre = place.centre(plan_cell(kitchen, cell / kRayStride, cell % kRayStride));
     EXPECT_EQ(canvas.at(int(centre.x) - 7, int(centre.y)), object_colour(i)) << kKitchenObjectNames[i];
   }
   const Point agent = place.centre(plan_cell(kitchen, frame.eye.row, frame.eye.column));
@@ -132,14 +132,14 @@ TEST(KitchenMoment, ObjectsAndAgentLieWhereTheyAre) {
 TEST(KitchenMoment, SmallPictureIsTheExtractors) {
   const KitchenFrame frame = small_world().frame(0, kitchen_start());
   uint8_t rgb[kSmallView * kSmallView * 3];
-  render_small(small_world().scene(0), frame, rgb);
+  render_small(small_world().solids(0), frame, rgb);
   Canvas canvas(3 * kSmallView, 3 * kSmallView, font());
-  draw_small_seen(canvas, {0, 0, 3 * kSmallView, 3 * kSmallView}, small_world().scene(0), &frame);
+  draw_small_seen(canvas, {0, 0, 3 * kSmallView, 3 * kSmallView}, small_world().solids(0), &frame);
   for (int at = 0; at < kSmallView * kSmallView; ++at) {
     const Rgb expected = {rgb[3 * at], rgb[3 * at + 1], rgb[3 * at + 2]};
     ASSERT_EQ(canvas.at(at % kSmallView * 3 + 1, at / kSmallView * 3 + 1), expected) << at;
   }
-  draw_small_seen(canvas, {0, 0, 3 * kSmallView, 3 * kSmallView}, small_world().scene(0), nullptr);
+  draw_small_seen(canvas, {0, 0, 3 * kSmallView, 3 * kSmallView}, small_world().solids(0), nullptr);
   EXPECT_EQ(canvas.at(40, 40), (Rgb{0, 0, 0}));
 }
 

@@ -28,7 +28,7 @@ inline std::string expert_lines(const std::vector<EnvTask>& pairs, int count, do
   return lines;
 }
 
-// The network's input behind these frames, by its definition.
+// The network's input after these frames, by its definition.
 inline std::vector<uint8_t> pictures_of(const Maze& maze, const std::vector<GridFrame>& frames, int window) {
   std::vector<uint8_t> pictures(size_t(kGridCells) * kHistory, kUnseen);
   for (int f = 0; f < kHistory; ++f) {

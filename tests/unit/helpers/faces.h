@@ -6,7 +6,7 @@
 #include "draw/face/film.h"
 #include "draw/grid/grid_face.h"
 #include "draw/kitchen/kitchen_face.h"
-#include "helpers/kitchen_rooms.h"
+#include "helpers/kitchens.h"
 #include "helpers/mazes.h"
 
 namespace synpo {

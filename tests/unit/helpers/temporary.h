@@ -1,20 +1,20 @@
 // A folder that is gone, with all that is in it, at the end of a test.
 #pragma once
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <string>
 
 namespace synpo {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() : path_(testing::TempDir() + "synpo_test_" + std::to_string(getpid())) {
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directory(path_);
+  TemporaryFolder() : path_(testing::TempDir() + "synpo_test_XXXXXX") {
+    if (!mkdtemp(path_.data())) throw std::runtime_error("cannot make " + path_);
   }
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   TemporaryFolder(const TemporaryFolder&) = delete;

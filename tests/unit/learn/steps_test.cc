@@ -67,15 +67,15 @@ bool is_step(const Minibatch& batch, int i, const Walk& walk, int window, int ta
   return std::equal(pictures.begin(), pictures.end(), batch.observations.begin() + i * kPicture);
 }
 
-// Whether what stands behind sample `i`, the walk's next step, is where the taken action leads. `behind` is where the
-// batch has it.
-bool leads_on(const Minibatch& batch, int i, int behind, const Walk& walk, int window) {
+// Whether what comes after sample `i`, the walk's next step, is where the taken action leads. The batch has it at
+// `next`.
+bool leads_on(const Minibatch& batch, int i, int next, const Walk& walk, int window) {
   Walk after = walk;
   GridState state = walk.state;
   if (grid_step(walk.maze(), walk.task(), state, batch.taken[i]).terminated)
     return batch.next[i] == StepBatch<float>::kTerminal;
   after.step(batch.taken[i]);
-  return batch.next[i] == behind && is_step(batch, behind, after, window, after.move());
+  return batch.next[i] == next && is_step(batch, next, after, window, after.move());
 }
 
 ReplayMemory memory_of(int count, double noise, const std::vector<EnvTask>& pairs = {{0, 0}, {7, 3}, {12, 19}}) {
@@ -134,7 +134,7 @@ TEST(TrajectoryDraw, TakesAllStepsOfTheDrawnTrajectories) {
   for (const int count : drawn) EXPECT_NEAR(count, expected, 5 * std::sqrt(expected));
 }
 
-TEST(TrajectoryDraw, KnowsTheStepBehindAndThePlannersValues) {
+TEST(TrajectoryDraw, KnowsTheNextStepAndThePlannersValues) {
   ReplayMemory memory = memory_of(7, 0.3);
   Episode broken_off = expert({4, 4}, 0);
   ASSERT_GT(broken_off.actions.size(), 6u);
@@ -338,7 +338,7 @@ TEST(RunningDraw, NoiseAndTheLearnersMovesAreAsOftenAsAsked) {
   EXPECT_LT(double(stayed) / steps, 0.68);
 }
 
-TEST(RunningDraw, KnowsTheStepBehindAndThePlannersValues) {
+TEST(RunningDraw, KnowsTheNextStepAndThePlannersValues) {
   const ReplayMemory memory = memory_of(9, 0.3);
   const RunningOptions options = {6, 1, 0.3, 0.2, false, kStepLimit};
   RunningDraw running(builtin_world(), options, 1);
@@ -377,7 +377,7 @@ TEST(RunningDraw, DrawsTheSameWhateverIsNeededBesides) {
     for (int i = 0; i < 7; ++i) greedy.push_back((update + i) % kGridActions);
     for (int n = 0; n < 4; ++n) {
       batches[n].needs = needs[n];
-      // Steps behind others take the other half of the batch; an odd one is rounded up.
+      // Steps after others take the other half of the batch; an odd one is rounded up.
       running[n].draw(memory, parallel, needs[n].next ? 13 : 7, 1, update, batches[n]);
       EXPECT_EQ(batches[n].size(), needs[n].next ? 14 : 7);
       batches[n].needs = {};

@@ -6,7 +6,7 @@
 
 #include "base/half.h"
 #include "base/hash.h"
-#include "helpers/kitchen_rooms.h"
+#include "helpers/kitchens.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
 #include "play/kitchen_scenes.h"
@@ -29,7 +29,7 @@ PictureFeatures frames_as_features() {
   features.name = "frames";
   features.hash = 0xabc;
   features.picture_bytes = kPicture;
-  features.draw = [](const KitchenScene&, const KitchenFrame& frame, uint8_t* picture) {
+  features.draw = [](const KitchenSolids&, const KitchenFrame& frame, uint8_t* picture) {
     int there = 0;
     for (int i = 0; i < kKitchenObjects; ++i) there += (i + 1) * (frame.objects[size_t(i)] + 1);
     const int numbers[kPicture] = {frame.eye.heading / 90, frame.eye.horizon / 30 + 1, frame.doors,
@@ -49,10 +49,10 @@ Scene small_scene(int layouts = 2) {
                     [](size_t, size_t) {});
 }
 
-SceneKitchens world_of_scene(Scene scene) {
-  std::vector<SceneKitchen> kitchens;
+RecordedKitchens world_of_scene(Scene scene) {
+  std::vector<RecordedKitchen> kitchens;
   kitchens.push_back(to_kitchen(std::move(scene)));
-  return SceneKitchens(std::move(kitchens));
+  return RecordedKitchens(std::move(kitchens));
 }
 
 Scene scene_of(const std::string& bytes) {
@@ -207,9 +207,9 @@ TEST(Scene, RefusesHostileFiles) {
 }
 
 // The same episodes in the kitchen that has a plan and in its scene, by actions of all kinds.
-TEST(SceneKitchens, PlayAsTheKitchenOfThePlan) {
+TEST(RecordedKitchens, PlayAsTheKitchenOfThePlan) {
   const auto layouts = random_layouts(small_world(), 0, 3, 1);
-  const SceneKitchens scenes = world_of_scene(small_scene(3));
+  const RecordedKitchens scenes = world_of_scene(small_scene(3));
   const PictureFeatures features = frames_as_features();
   ASSERT_EQ(scenes.task_names(), small_world().task_names());
   ASSERT_EQ(scenes.action_names(), small_world().action_names());
@@ -246,7 +246,7 @@ TEST(SceneKitchens, PlayAsTheKitchenOfThePlan) {
         std::memcpy(views.data(), observation.data(), observation.size());
         uint8_t picture[kPicture];
         std::vector<float> expected(kViewFeatures);
-        features.draw(small_world().scene(0), small_world().frame(0, plan), picture);
+        features.draw(small_world().solids(0), small_world().frame(0, plan), picture);
         features.extract(picture, 1, expected.data());
         ASSERT_TRUE(std::equal(expected.begin(), expected.end(), views.begin() + 3 * kViewFeatures));
         ASSERT_EQ(views[4 * kViewFeatures], unpack(scene).hand);
@@ -275,7 +275,7 @@ TEST(SceneKitchens, PlayAsTheKitchenOfThePlan) {
   EXPECT_GT(successes, 50);
 }
 
-TEST(SceneKitchens, EqualPicturesShareARow) {
+TEST(RecordedKitchens, EqualPicturesShareARow) {
   const Scene scene = small_scene(2);
   const size_t used = size_t(std::count_if(scene.view.begin(), scene.view.end(), [](int32_t row) { return row >= 0; }));
   const size_t rows = scene.features.size() / (kSceneFeatures * sizeof(Half));
@@ -290,7 +290,7 @@ TEST(SceneKitchens, EqualPicturesShareARow) {
     const float value = to_float(half);
     single.features.append(reinterpret_cast<const char*>(&value), sizeof value);
   }
-  const SceneKitchens a = world_of_scene(scene), b = world_of_scene(scene_of(format_scene(single)));
+  const RecordedKitchens a = world_of_scene(scene), b = world_of_scene(scene_of(format_scene(single)));
   StateHistory history;
   Random random(1, Purpose::kEpisodeStart);
   for (int i = 0; i < 3; ++i) history.push(a.reset(0, random));
@@ -301,7 +301,7 @@ TEST(SceneKitchens, EqualPicturesShareARow) {
   EXPECT_TRUE(std::all_of(x.begin(), x.begin() + kViewFeatures * 4, [](uint8_t byte) { return byte == 0; }));
 }
 
-TEST(SceneKitchens, RefuseWhatCannotBePlayed) {
+TEST(RecordedKitchens, RefuseWhatCannotBePlayed) {
   const Scene good = small_scene(2);
   const auto refused = [&](auto&& change) {
     Scene scene = good;
@@ -328,12 +328,12 @@ TEST(SceneKitchens, RefuseWhatCannotBePlayed) {
             "65 small, layout 1: from row 3, column 1, heading 0, horizon -30, doors 0: the Mug cannot be picked up");
   const auto two = [&](const char* name, const char* extractor) {
     return thrown([&] {
-      std::vector<SceneKitchen> kitchens;
+      std::vector<RecordedKitchen> kitchens;
       kitchens.push_back(to_kitchen(good));
       kitchens.push_back(to_kitchen(good));
       kitchens[1].name = name;
       kitchens[1].extractor = extractor;
-      SceneKitchens{std::move(kitchens)};
+      RecordedKitchens{std::move(kitchens)};
     });
   };
   EXPECT_EQ(two("small", "frames@0000000000000abc"), "65 two environments are named 'small'");
@@ -342,8 +342,8 @@ TEST(SceneKitchens, RefuseWhatCannotBePlayed) {
   EXPECT_EQ(two("other", "frames@0000000000000abc"), "nothing thrown");
 }
 
-TEST(SceneKitchens, RefuseHostileStates) {
-  const SceneKitchens scenes = world_of_scene(small_scene(2));
+TEST(RecordedKitchens, RefuseHostileStates) {
+  const RecordedKitchens scenes = world_of_scene(small_scene(2));
   Random random(1, Purpose::kEpisodeStart);
   const KitchenState good = unpack(scenes.reset(0, random));
   EXPECT_TRUE(scenes.valid({0, 0}, pack(good)));
@@ -413,7 +413,7 @@ TEST(SceneFolder, IsAWorldInNaturalOrder) {
 }
 
 TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
-  const SceneKitchens scenes = world_of_scene(small_scene(1));
+  const RecordedKitchens scenes = world_of_scene(small_scene(1));
   PolicyShape shape;
   shape.observation = scenes.observation_spec();
   shape.envs = 1;

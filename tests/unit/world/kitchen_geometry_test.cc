@@ -4,15 +4,15 @@
 
 #include <cmath>
 
-#include "helpers/kitchen_rooms.h"
-#include "world/kitchen/plan.h"
+#include "helpers/kitchens.h"
+#include "world/kitchen/builtin_kitchens.h"
 
 namespace synpo {
 namespace {
 
 TEST(KitchenGeometry, MovesOnItsGrid) {
   const Kitchen kitchen = small_kitchen();
-  const KitchenTables tables = kitchen_tables(kitchen, KitchenScene(kitchen));
+  const KitchenTables tables = kitchen_tables(kitchen, KitchenSolids(kitchen));
   ASSERT_EQ(tables.poses.size(), kitchen.floor.size() * 12);
   EXPECT_EQ(tables.start_poses.size(), kitchen.floor.size() * 4);
   for (const uint16_t start : tables.start_poses) EXPECT_EQ(tables.poses[start].horizon, 0);
@@ -61,7 +61,7 @@ TEST(KitchenGeometry, SeesWhatNothingHides) {
   for (const int i : {3, 14, 15, 16}) kitchens.push_back(builtin_kitchens()[size_t(i)]);
   int seen = 0, hidden = 0;
   for (const Kitchen& kitchen : kitchens) {
-    const KitchenTables tables = kitchen_tables(kitchen, KitchenScene(kitchen));
+    const KitchenTables tables = kitchen_tables(kitchen, KitchenSolids(kitchen));
     for (int pose = 0; pose < tables.pose_count(); ++pose) {
       const KitchenPose& eye = tables.poses[size_t(pose)];
       for (size_t slot = 0; slot < tables.slots.size(); ++slot) {
@@ -106,7 +106,7 @@ TEST(KitchenGeometry, SeesWhatNothingHides) {
 
 TEST(KitchenGeometry, EverySlotIsNearestFromSomewhere) {
   for (const Kitchen& kitchen : builtin_kitchens()) {
-    const KitchenTables tables = kitchen_tables(kitchen, KitchenScene(kitchen));
+    const KitchenTables tables = kitchen_tables(kitchen, KitchenSolids(kitchen));
     std::vector<bool> nearest(tables.slots.size(), false);
     for (int pose = 0; pose < tables.pose_count(); ++pose) {
       const auto list = tables.sight[0]->slots.at(pose);

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "base/error.h"
-#include "helpers/kitchen_rooms.h"
+#include "helpers/kitchens.h"
 #include "world/kitchen/kitchen_set.h"
 
 namespace synpo {

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/hash.h"
-#include "helpers/kitchen_rooms.h"
+#include "helpers/kitchens.h"
+#include "world/kitchen/builtin_kitchens.h"
 #include "world/kitchen/kitchen_set.h"
-#include "world/kitchen/plan.h"
 
 namespace synpo {
 namespace {

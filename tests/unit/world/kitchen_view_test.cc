@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "base/hash.h"
-#include "helpers/kitchen_rooms.h"
+#include "helpers/kitchens.h"
 #include "world/kitchen/kitchen_set.h"
 
 namespace synpo {
@@ -20,15 +20,15 @@ const KitchenSet& world() {
 
 using Picture = std::vector<uint8_t>;
 
-Picture picture(const KitchenScene& scene, const KitchenFrame& frame, int side) {
+Picture picture(const KitchenSolids& solids, const KitchenFrame& frame, int side) {
   Picture rgb(size_t(side * side * 3), 77);
-  render(scene, frame, side, side, rgb.data());
+  render(solids, frame, side, side, rgb.data());
   return rgb;
 }
 
-Picture small_picture(const KitchenScene& scene, const KitchenFrame& frame) {
+Picture small_picture(const KitchenSolids& solids, const KitchenFrame& frame) {
   Picture rgb(size_t(kSmallView * kSmallView * 3), 99);
-  render_small(scene, frame, rgb.data());
+  render_small(solids, frame, rgb.data());
   return rgb;
 }
 
@@ -48,10 +48,10 @@ KitchenState any_state(int env, uint64_t number) {
 KitchenFrame any_frame(int env, uint64_t number) { return world().frame(env, pack(any_state(env, number))); }
 
 TEST(KitchenRay, MeetsThingsWhereTheyStand) {
-  const KitchenScene scene(small_kitchen());
-  const SceneView view = {&scene, 4.5f, 4.5f, scene.reach.data(), nullptr};
+  const KitchenSolids solids(small_kitchen());
+  const SolidsView view = {&solids, 4.5f, 4.5f, solids.reach.data(), nullptr};
   const auto expect = [&](Vec3 direction, Material material, Face face, float t) {
-    const Hit hit = trace(view, scene_cell(4, 4), direction);
+    const Hit hit = trace(view, ray_cell(4, 4), direction);
     EXPECT_EQ(int(hit.material), int(material));
     EXPECT_EQ(int(hit.face), int(face));
     EXPECT_NEAR(hit.t, t, 1e-5);
@@ -85,19 +85,19 @@ TEST(KitchenView, AgreesWithWhatIsVisible) {
     const int pose = int(random.below(uint32_t(tables.pose_count())));
     KitchenFrame frame;
     frame.eye = tables.poses[size_t(pose)];
-    const Picture empty = picture(world().scene(env), frame, kSide);
+    const Picture empty = picture(world().solids(env), frame, kSide);
     const auto slots = tables.sight[0]->slots.at(pose);
     if (!slots.empty()) {
       const size_t object = random.below(kKitchenObjects);
       const KitchenCell& slot = tables.slots[slots[random.below(uint32_t(slots.size()))].index];
-      frame.objects[object] = int16_t(scene_cell(slot.row, slot.column));
-      ASSERT_NE(picture(world().scene(env), frame, kSide), empty) << i;
+      frame.objects[object] = int16_t(ray_cell(slot.row, slot.column));
+      ASSERT_NE(picture(world().solids(env), frame, kSide), empty) << i;
       ++objects[object];
     }
     for (const KitchenSeen& seen : tables.sight[0]->receptacles.at(pose)) {
       const Camera camera(frame.eye.heading / 90, frame.eye.horizon);
-      const SceneView view = {&world().scene(env), float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f,
-                              world().scene(env).reach.data(), nullptr};
+      const SolidsView view = {&world().solids(env), float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f,
+                               world().solids(env).reach.data(), nullptr};
       int pixels = 0;
       for (int at = 0; at < kSide * kSide; ++at) {
         const float u = kViewSlope * (float(at % kSide * 2 + 1) / kSide - 1),
@@ -105,7 +105,7 @@ TEST(KitchenView, AgreesWithWhatIsVisible) {
         const Vec3 d = {camera.forward.x + u * camera.right.x + v * camera.up.x,
                         camera.forward.y + u * camera.right.y + v * camera.up.y,
                         camera.forward.z + u * camera.right.z + v * camera.up.z};
-        pixels += trace(view, scene_cell(frame.eye.row, frame.eye.column), d).material == materials[seen.index];
+        pixels += trace(view, ray_cell(frame.eye.row, frame.eye.column), d).material == materials[seen.index];
       }
       ASSERT_GT(pixels, 0);
       ++receptacles[seen.index];
@@ -124,9 +124,9 @@ TEST(KitchenView, ShowsWhetherAVisibleDoorIsOpen) {
         if (seen.index >= kKitchenDoors) continue;
         KitchenFrame frame;
         frame.eye = tables.poses[size_t(pose)];
-        const Picture closed = small_picture(world().scene(env), frame);
+        const Picture closed = small_picture(world().solids(env), frame);
         frame.doors = uint8_t(1 << seen.index);
-        ASSERT_NE(small_picture(world().scene(env), frame), closed) << env << " pose " << pose;
+        ASSERT_NE(small_picture(world().solids(env), frame), closed) << env << " pose " << pose;
         ++doors;
       }
   }
@@ -134,29 +134,29 @@ TEST(KitchenView, ShowsWhetherAVisibleDoorIsOpen) {
 }
 
 TEST(KitchenView, ShowsNothingFromBehindNorFromTheHand) {
-  const KitchenScene scene(small_kitchen());
+  const KitchenSolids solids(small_kitchen());
   KitchenFrame frame;
   frame.eye = {4, 4, 180, 0};
-  const Picture empty = picture(scene, frame, 64);
-  frame.objects[3] = int16_t(scene_cell(1, 1));
-  EXPECT_EQ(picture(scene, frame, 64), empty);
+  const Picture empty = picture(solids, frame, 64);
+  frame.objects[3] = int16_t(ray_cell(1, 1));
+  EXPECT_EQ(picture(solids, frame, 64), empty);
   KitchenState state = any_state(0, 1);
   state.hand = 3;
   state.slots[3] = kNoSlot;
   EXPECT_EQ(world().frame(0, pack(state)).objects[3], -1);
   const KitchenCell& mug = world().tables(0).slots[state.slots[2]];
-  EXPECT_EQ(world().frame(0, pack(state)).objects[2], scene_cell(mug.row, mug.column));
+  EXPECT_EQ(world().frame(0, pack(state)).objects[2], ray_cell(mug.row, mug.column));
 }
 
 TEST(KitchenView, AnObjectIsDrawnInItsColourWhereItLies) {
-  const KitchenScene scene(small_kitchen());
+  const KitchenSolids solids(small_kitchen());
   KitchenFrame frame;
   frame.eye = {4, 1, 0, 0};  // before the counter cell (2, 1), half a metre away
   frame.eye.horizon = 30;
   for (size_t object = 0; object < kKitchenObjects; ++object) {
     frame.objects.fill(-1);
-    frame.objects[object] = int16_t(scene_cell(2, 1));
-    const Picture rgb = picture(scene, frame, 101);
+    frame.objects[object] = int16_t(ray_cell(2, 1));
+    const Picture rgb = picture(solids, frame, 101);
     // Its middle in the camera's axes: ahead 2 cells, 2.2 down.
     const float depth = 2 * 0.8660254f + 2.2f * 0.5f, up = 2 * 0.5f - 2.2f * 0.8660254f;
     const int row = int(50.5f - 50.5f * up / depth / kViewSlope);
@@ -173,25 +173,25 @@ TEST(KitchenView, AnObjectIsDrawnInItsColourWhereItLies) {
 }
 
 TEST(KitchenView, AnObjectStandsOutAboveItsCounter) {
-  const KitchenScene scene(small_kitchen());
+  const KitchenSolids solids(small_kitchen());
   KitchenFrame frame;
   frame.eye = {7, 1, 0, 0};
-  frame.objects[1] = int16_t(scene_cell(2, 1));
+  frame.objects[1] = int16_t(ray_cell(2, 1));
   // The Lettuce from five cells away: its front, 4.76 cells ahead, up to 1.72 below the eye, where the ray passes its
   // cell above the counter.
-  const Picture rgb = picture(scene, frame, 101);
+  const Picture rgb = picture(solids, frame, 101);
   const uint8_t* pixel = rgb.data() + (int(50.5f + 50.5f * (1.8f / 4.76f) / kViewSlope) * 101 + 50) * 3;
   EXPECT_GT(pixel[1], 3 * pixel[0]);
   EXPECT_GT(pixel[1], 3 * pixel[2]);
 }
 
 TEST(KitchenView, AnOpenDoorShowsADarkInside) {
-  const KitchenScene scene(small_kitchen());
+  const KitchenSolids solids(small_kitchen());
   for (const int receptacle : {kFridge, kMicrowave}) {
     KitchenFrame frame;
     frame.eye = receptacle == kFridge ? KitchenPose{7, 2, 0, 0} : KitchenPose{4, 4, 180, 0};
     const auto dark_pixels = [&] {
-      const Picture rgb = picture(scene, frame, 101);
+      const Picture rgb = picture(solids, frame, 101);
       int dark = 0;
       for (size_t at = 0; at < rgb.size(); at += 3) dark += rgb[at] < 24 && rgb[at + 1] < 24 && rgb[at + 2] < 24;
       return dark;
@@ -218,7 +218,7 @@ TEST(KitchenView, StoredRaysDrawTheSamePicture) {
   for (uint64_t i = 0; i < 400; ++i) {
     const int env = int(i) % world().envs();
     const KitchenFrame frame = any_frame(env, i);
-    ASSERT_EQ(small_picture(world().scene(env), frame), picture(world().scene(env), frame, kSmallView)) << i;
+    ASSERT_EQ(small_picture(world().solids(env), frame), picture(world().solids(env), frame, kSmallView)) << i;
   }
 }
 
@@ -277,10 +277,10 @@ TEST(KitchenFeatures, TellVisibleThingsApart) {
     const KitchenCell& slot = tables.slots[slots[random.below(uint32_t(slots.size()))].index];
     const size_t one = random.below(kKitchenObjects),
                  other = (one + 1 + random.below(kKitchenObjects - 1)) % kKitchenObjects;
-    frame.objects[one] = int16_t(scene_cell(slot.row, slot.column));
-    const std::vector<float> with_one = features_of(small_picture(world().scene(env), frame));
+    frame.objects[one] = int16_t(ray_cell(slot.row, slot.column));
+    const std::vector<float> with_one = features_of(small_picture(world().solids(env), frame));
     std::swap(frame.objects[one], frame.objects[other]);
-    same += with_one == features_of(small_picture(world().scene(env), frame));
+    same += with_one == features_of(small_picture(world().solids(env), frame));
     ++objects;
   }
   EXPECT_GT(objects, 500);
@@ -292,7 +292,7 @@ TEST(KitchenFeatures, DoNotDependOnWhatIsKeptNorOnThreads) {
   std::vector<std::vector<float>> expected;
   for (uint64_t i = 0; i < kViews; ++i) {
     const int env = int(i % 3);
-    expected.push_back(features_of(small_picture(world().scene(env), any_frame(env, i / 2))));
+    expected.push_back(features_of(small_picture(world().solids(env), any_frame(env, i / 2))));
   }
   std::vector<int> wrong(4, 0);
   std::vector<std::thread> threads;
@@ -301,7 +301,7 @@ TEST(KitchenFeatures, DoNotDependOnWhatIsKeptNorOnThreads) {
       for (int n = 0; n < 2 * kViews; ++n) {
         const uint64_t i = uint64_t(n / 2) * (thread * 6 + 1) % kViews;  // every view twice
         const int env = int(i % 3);
-        wrong[thread] += std::memcmp(view_features(world().scene(env), any_frame(env, i / 2)), expected[i].data(),
+        wrong[thread] += std::memcmp(view_features(world().solids(env), any_frame(env, i / 2)), expected[i].data(),
                                      kViewFeatures * sizeof(float)) != 0;
       }
     });
@@ -320,9 +320,9 @@ TEST(KitchenFeatures, AreOfTheirOwnKitchen) {
           KitchenFrame frame;
           frame.eye = {row, 5, heading, 0};
           frame.doors = doors;
-          const float* features = view_features(world().scene(env), frame);
+          const float* features = view_features(world().solids(env), frame);
           ASSERT_TRUE(std::equal(features, features + kViewFeatures,
-                                 features_of(small_picture(world().scene(env), frame)).begin()));
+                                 features_of(small_picture(world().solids(env), frame)).begin()));
           ++views;
         }
   EXPECT_GT(views, 500);
@@ -344,7 +344,7 @@ TEST(KitchenSet, ObservesTheLastFourViewsAndTheHand) {
       const int of = int(step) - 3 + view;
       const std::vector<float> expected =
           of < 0 ? std::vector<float>(kViewFeatures, 0)
-                 : features_of(small_picture(world().scene(env), world().frame(env, states[size_t(of)])));
+                 : features_of(small_picture(world().solids(env), world().frame(env, states[size_t(of)])));
       ASSERT_TRUE(std::equal(expected.begin(), expected.end(), observation.begin() + view * kViewFeatures))
           << step << " " << view;
     }

@@ -221,7 +221,7 @@ TEST(Planner, ActsByItsValues) {
     const Planner& planner = world.planner(env);
     const std::array<int, kGridActions> q = planner.q_cents(task, state);
     ASSERT_EQ(planner.action(task, state), std::max_element(q.begin(), q.end()) - q.begin());
-    // Each value is the return of that action and the planner's own play behind it.
+    // Each value is the return of that action and the planner's own play after it.
     for (int action = 0; action < kGridActions; ++action) {
       GridState at = state;
       WorldStep step = grid_step(world.maze(env), task, at, action);

@@ -31,9 +31,9 @@ Vec3 offset(const KitchenCell& from, const Target& target) {
           target.height - kEyeHeight};
 }
 
-bool clear_ray(const KitchenScene& scene, const KitchenCell& from, const Target& target) {
-  const SceneView view = {&scene, float(from.column) + 0.5f, float(from.row) + 0.5f, scene.reach.data(), nullptr};
-  const Hit hit = trace(view, scene_cell(from.row, from.column), offset(from, target));
+bool clear_ray(const KitchenSolids& solids, const KitchenCell& from, const Target& target) {
+  const SolidsView view = {&solids, float(from.column) + 0.5f, float(from.row) + 0.5f, solids.reach.data(), nullptr};
+  const Hit hit = trace(view, ray_cell(from.row, from.column), offset(from, target));
   return hit.t >= 1 || (target.material != Material::kObject && hit.material == target.material);
 }
 
@@ -45,13 +45,14 @@ struct Near {
 
 // Calls use(near) for every pose in order, with what of the targets is in sight, nearest first and then by index.
 template <class Use>
-void for_every_pose(const Kitchen& kitchen, const KitchenScene& scene, const std::vector<Target>& targets, Use&& use) {
+void for_every_pose(const Kitchen& kitchen, const KitchenSolids& solids, const std::vector<Target>& targets,
+                    Use&& use) {
   std::vector<Near> around, seen;
   for (const KitchenCell& from : kitchen.floor) {
     around.clear();
     for (size_t i = 0; i < targets.size(); ++i) {
       const int distance = squared(from, targets[i]);
-      if (distance <= 4 * kSightCells * kSightCells && clear_ray(scene, from, targets[i]))
+      if (distance <= 4 * kSightCells * kSightCells && clear_ray(solids, from, targets[i]))
         around.push_back({distance, int(i), offset(from, targets[i])});
     }
     std::stable_sort(around.begin(), around.end(), [](const Near& a, const Near& b) { return a.squared < b.squared; });
@@ -66,9 +67,9 @@ void for_every_pose(const Kitchen& kitchen, const KitchenScene& scene, const std
   }
 }
 
-KitchenSeenLists seen_lists(const Kitchen& kitchen, const KitchenScene& scene, const std::vector<Target>& targets) {
+KitchenSeenLists seen_lists(const Kitchen& kitchen, const KitchenSolids& solids, const std::vector<Target>& targets) {
   KitchenSeenLists lists;
-  for_every_pose(kitchen, scene, targets, [&](const std::vector<Near>& seen) {
+  for_every_pose(kitchen, solids, targets, [&](const std::vector<Near>& seen) {
     for (const Near& near : seen)
       lists.items.push_back(
           {uint16_t(std::lround(std::sqrt(double(near.squared)) * 500 * double(kCellMetres))), uint8_t(near.target)});
@@ -99,14 +100,14 @@ std::vector<Target> receptacle_targets(const Kitchen& kitchen) {
 }
 
 // Cells that are nearer than all others from somewhere, thinned out evenly where they are too many.
-std::vector<KitchenCell> choose_slots(const Kitchen& kitchen, const KitchenScene& scene) {
+std::vector<KitchenCell> choose_slots(const Kitchen& kitchen, const KitchenSolids& solids) {
   std::vector<KitchenCell> cells;
   for (int row = 0; row < kitchen.rows; ++row)
     for (int column = 0; column < kitchen.columns; ++column)
       if (kitchen.at(row, column) == 'c' || kitchen.at(row, column) == 't')
         cells.push_back({int16_t(row), int16_t(column)});
   std::vector<bool> nearest(cells.size(), false);
-  for_every_pose(kitchen, scene, slot_targets(kitchen, cells), [&](const std::vector<Near>& seen) {
+  for_every_pose(kitchen, solids, slot_targets(kitchen, cells), [&](const std::vector<Near>& seen) {
     if (!seen.empty() && (seen.size() == 1 || seen[0].squared < seen[1].squared))
       nearest[size_t(seen[0].target)] = true;
   });
@@ -120,16 +121,16 @@ std::vector<KitchenCell> choose_slots(const Kitchen& kitchen, const KitchenScene
 
 }  // namespace
 
-KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenScene& scene) {
+KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenSolids& solids) {
   KitchenTables tables;
   const int cells = int(kitchen.floor.size());
-  std::vector<int> floor_index(kSceneCells, -1);
+  std::vector<int> floor_index(kRayCells, -1);
   for (int i = 0; i < cells; ++i)
-    floor_index[size_t(scene_cell(kitchen.floor[size_t(i)].row, kitchen.floor[size_t(i)].column))] = i;
+    floor_index[size_t(ray_cell(kitchen.floor[size_t(i)].row, kitchen.floor[size_t(i)].column))] = i;
   for (int i = 0; i < cells; ++i) {
     const KitchenCell& at = kitchen.floor[size_t(i)];
     for (int heading = 0; heading < kHeadings; ++heading) {
-      const int ahead = floor_index[size_t(scene_cell(at.row + kRowStep[heading], at.column + kColumnStep[heading]))];
+      const int ahead = floor_index[size_t(ray_cell(at.row + kRowStep[heading], at.column + kColumnStep[heading]))];
       for (int horizon = 0; horizon < kHorizons; ++horizon) {
         if (horizon == kLevel) tables.start_poses.push_back(uint16_t(tables.poses.size()));
         tables.poses.push_back(
@@ -142,13 +143,13 @@ KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenScene& scene) 
       }
     }
   }
-  tables.slots = choose_slots(kitchen, scene);
+  tables.slots = choose_slots(kitchen, solids);
   if (int(tables.slots.size()) < kKitchenObjects)
     fail(Exit::kData, kitchen.name, ": found ", tables.slots.size(),
          " places on which an object can lie and be picked up, expected at least ", kKitchenObjects);
   auto sight = std::make_shared<KitchenSight>();
-  sight->slots = seen_lists(kitchen, scene, slot_targets(kitchen, tables.slots));
-  sight->receptacles = seen_lists(kitchen, scene, receptacle_targets(kitchen));
+  sight->slots = seen_lists(kitchen, solids, slot_targets(kitchen, tables.slots));
+  sight->receptacles = seen_lists(kitchen, solids, receptacle_targets(kitchen));
   tables.sight.fill(sight);
   return tables;
 }

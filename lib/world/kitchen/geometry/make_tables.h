@@ -14,6 +14,6 @@ namespace synpo {
 constexpr int kSightCells = 6;  // 1.5 m
 
 // Throws kData, naming the kitchen, where there are fewer slots than objects.
-KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenScene& scene);
+KitchenTables kitchen_tables(const Kitchen& kitchen, const KitchenSolids& solids);
 
 }  // namespace synpo

@@ -17,7 +17,7 @@ constexpr float kBasinFloor = in_cells(0.74f);
 constexpr float kBasinRim = in_cells(0.035f);
 constexpr float kMicrowaveGap = in_cells(0.03f);
 
-// Where the ray meets a box from outside, not before `from` nor behind `to`.
+// Where the ray meets a box from outside, not before `from` nor after `to`.
 bool hit_box(const Vec3& low, const Vec3& high, const Vec3& eye, const Vec3& d, float from, float to, float& t,
              Face& face) {
   float enter = -kInfinity, leave = kInfinity;
@@ -42,7 +42,7 @@ bool hit_box(const Vec3& low, const Vec3& high, const Vec3& eye, const Vec3& d, 
   return true;
 }
 
-KitchenScene::Column column_of(char c) {
+KitchenSolids::Column column_of(char c) {
   switch (c) {
     case '.':
       return {};
@@ -60,7 +60,7 @@ KitchenScene::Column column_of(char c) {
 }
 
 // A box in the frame of a footprint: `along` its back from the middle, `out` of the back, heights above the floor.
-SceneBox placed(const Kitchen::Footprint& foot, float along_low, float along_high, float out_low, float out_high,
+SolidBox placed(const Kitchen::Footprint& foot, float along_low, float along_high, float out_low, float out_high,
                 float z_low, float z_high, Material material) {
   const float top = float(foot.row), left = float(foot.column), bottom = top + float(foot.rows),
               right = left + float(foot.columns);
@@ -81,7 +81,7 @@ SceneBox placed(const Kitchen::Footprint& foot, float along_low, float along_hig
   }
 }
 
-void add_microwave(const Kitchen::Footprint& foot, std::vector<SceneBox>& boxes) {
+void add_microwave(const Kitchen::Footprint& foot, std::vector<SolidBox>& boxes) {
   const float row = float(foot.row), column = float(foot.column);
   boxes.push_back({{column + kMicrowaveGap, row + kMicrowaveGap, kCounterHeight},
                    {column + float(foot.columns) - kMicrowaveGap, row + float(foot.rows) - kMicrowaveGap,
@@ -90,7 +90,7 @@ void add_microwave(const Kitchen::Footprint& foot, std::vector<SceneBox>& boxes)
 }
 
 // Rim, tap and spout above the basin.
-void add_sink(const Kitchen::Footprint& foot, std::vector<SceneBox>& boxes) {
+void add_sink(const Kitchen::Footprint& foot, std::vector<SolidBox>& boxes) {
   const bool sideways = foot.back % 2;
   const float half = float(sideways ? foot.rows : foot.columns) / 2, depth = float(sideways ? foot.columns : foot.rows);
   const auto add = [&](float along_low, float along_high, float out_low, float out_high, float z_low, float z_high) {
@@ -106,7 +106,7 @@ void add_sink(const Kitchen::Footprint& foot, std::vector<SceneBox>& boxes) {
 }
 
 // A leg where two sides of a table meet.
-void add_legs(const Kitchen& kitchen, int row, int column, std::vector<SceneBox>& boxes) {
+void add_legs(const Kitchen& kitchen, int row, int column, std::vector<SolidBox>& boxes) {
   for (int side = 0; side < 4; ++side) {
     const int next = (side + 1) % 4;
     if (kitchen.at(row + kRowStep[side], column + kColumnStep[side]) == 't' ||
@@ -120,10 +120,10 @@ void add_legs(const Kitchen& kitchen, int row, int column, std::vector<SceneBox>
 
 }  // namespace
 
-KitchenScene::KitchenScene(const Kitchen& kitchen)
-    : columns(kSceneCells), reach(kSceneCells, 0.0f), receptacles(kitchen.receptacles), hash(kitchen.hash),
-      palette(kitchen.hash), cells(kitchen.rows * kSceneStride) {
-  std::vector<SceneBox> all;
+KitchenSolids::KitchenSolids(const Kitchen& kitchen)
+    : columns(kRayCells), reach(kRayCells, 0.0f), receptacles(kitchen.receptacles), hash(kitchen.hash),
+      palette(kitchen.hash), cells(kitchen.rows * kRayStride) {
+  std::vector<SolidBox> all;
   add_microwave(receptacles[kMicrowave], all);
   add_sink(receptacles[kSink], all);
   for (int row = 0; row < kitchen.rows; ++row)
@@ -131,12 +131,12 @@ KitchenScene::KitchenScene(const Kitchen& kitchen)
       if (kitchen.at(row, column) == 't') add_legs(kitchen, row, column, all);
   for (int row = 0; row < kitchen.rows; ++row)
     for (int column = 0; column < kitchen.columns; ++column) {
-      const int cell = scene_cell(row, column);
+      const int cell = ray_cell(row, column);
       Column& solid = columns[size_t(cell)];
       solid = column_of(kitchen.at(row, column));
       solid.first_box = uint16_t(boxes.size());
       reach[size_t(cell)] = solid.top;
-      for (const SceneBox& box : all) {
+      for (const SolidBox& box : all) {
         if (box.high.x <= float(column) || box.low.x >= float(column + 1) || box.high.y <= float(row) ||
             box.low.y >= float(row + 1))
           continue;
@@ -161,26 +161,26 @@ bool Camera::sees(const Vec3& offset) const {
   return reach > 0 && std::fabs(along(right)) <= reach && std::fabs(along(up)) <= reach;
 }
 
-void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit) {
-  const KitchenScene::Column& solid = view.scene->columns[size_t(cell)];
+void hit_boxes(const SolidsView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit) {
+  const KitchenSolids::Column& solid = view.solids->columns[size_t(cell)];
   const Vec3 eye = {view.eye_x, view.eye_y, kEyeHeight};
   float t;
   Face face;
   for (int i = 0; i < solid.boxes; ++i) {
-    const SceneBox& box = view.scene->boxes[size_t(solid.first_box + i)];
+    const SolidBox& box = view.solids->boxes[size_t(solid.first_box + i)];
     if (hit_box(box.low, box.high, eye, direction, t_in, t_out, t, face) && t < hit.t)
       hit = {t, cell, box.material, face, kNoObject};
   }
   const uint8_t object = view.occupants ? view.occupants[cell] : kNoObject;
   if (object == kNoObject) return;
-  const Vec3 above = {eye.x - float(cell % kSceneStride) - 0.5f, eye.y - float(cell / kSceneStride) - 0.5f,
+  const Vec3 above = {eye.x - float(cell % kRayStride) - 0.5f, eye.y - float(cell / kRayStride) - 0.5f,
                       eye.z - solid.top};
   for (const ObjectPart& part : object_parts(object))
     if (hit_box(part.low, part.high, above, direction, t_in, t_out, t, face) && t < hit.t)
       hit = {t, cell, part.trim ? Material::kObjectTrim : Material::kObject, face, object};
 }
 
-Hit trace(const SceneView& view, int cell, const Vec3& direction) {
+Hit trace(const SolidsView& view, int cell, const Vec3& direction) {
   Hit hit;
   for (RayWalk walk(cell, direction);; walk.next()) {
     const bool may_hit = lowest(direction.z, walk.t_in, walk.t_out) < view.reach[walk.cell] ||

@@ -27,9 +27,9 @@ struct Vec3 {
 };
 
 // Cells are numbered with the same stride in every kitchen, so that the way of a ray can be stored.
-constexpr int kSceneStride = 64;
-constexpr int kSceneCells = kMaxKitchenSide * kSceneStride;
-constexpr int scene_cell(int row, int column) { return row * kSceneStride + column; }
+constexpr int kRayStride = 64;
+constexpr int kRayCells = kMaxKitchenSide * kRayStride;
+constexpr int ray_cell(int row, int column) { return row * kRayStride + column; }
 constexpr uint8_t kNoObject = 255;
 
 enum class Material : uint8_t {
@@ -48,7 +48,7 @@ enum class Material : uint8_t {
 // The side of a solid that a ray meets; the first four are also headings in quarter turns.
 enum class Face : uint8_t { kNorth, kEast, kSouth, kWest, kTop, kBottom };
 
-struct SceneBox {
+struct SolidBox {
   Vec3 low, high;
   Material material;
 };
@@ -61,30 +61,30 @@ struct Hit {
   uint8_t object;  // for an object's materials
 };
 
-// What stands still, and one column of solid a cell: [bottom, top) is filled.
-struct KitchenScene {
-  explicit KitchenScene(const Kitchen& kitchen);
+// All that stands still: one column of solid a cell, [bottom, top) of it filled, and boxes.
+struct KitchenSolids {
+  explicit KitchenSolids(const Kitchen& kitchen);
 
   struct Column {
     float bottom = 0, top = 0;
     Material side = Material::kFloor, cover = Material::kFloor;
     uint16_t first_box = 0, boxes = 0;  // in `boxes`
   };
-  std::vector<Column> columns;  // [kSceneCells]
-  std::vector<float> reach;     // [kSceneCells]: no ray above it meets anything in the cell
-  std::vector<SceneBox> boxes;
+  std::vector<Column> columns;  // [kRayCells]
+  std::vector<float> reach;     // [kRayCells]: no ray above it meets anything in the cell
+  std::vector<SolidBox> boxes;
   std::array<Kitchen::Footprint, kKitchenReceptacles> receptacles;
   uint64_t hash;  // the kitchen's
   KitchenPalette palette;
   int cells;  // of the rows in use: columns and reach matter that far
 };
 
-// A scene with objects in it, seen from one place.
-struct SceneView {
-  const KitchenScene* scene;
+// The solids with objects among them, seen from one place.
+struct SolidsView {
+  const KitchenSolids* solids;
   float eye_x, eye_y;
-  const float* reach;        // as in the scene, objects included
-  const uint8_t* occupants;  // [kSceneCells]: the object in a cell, or kNoObject; null for none anywhere
+  const float* reach;        // as in the solids, objects included
+  const uint8_t* occupants;  // [kRayCells]: the object in a cell, or kNoObject; null for none anywhere
 };
 
 // Tallest object, and the middle of an object above what it lies on (for all the same, so that a slot is visible
@@ -105,7 +105,7 @@ constexpr float kViewSlope = 0.57735026919f;  // half the field of view: tan 30 
 // the ray goes by column first.
 struct RayWalk {
   RayWalk(int from, const Vec3& direction)
-      : cell(from), step_x(direction.x > 0 ? 1 : -1), step_y(direction.y > 0 ? kSceneStride : -kSceneStride),
+      : cell(from), step_x(direction.x > 0 ? 1 : -1), step_y(direction.y > 0 ? kRayStride : -kRayStride),
         face_x(direction.x > 0 ? Face::kWest : Face::kEast), face_y(direction.y > 0 ? Face::kNorth : Face::kSouth),
         length_x(std::fabs(direction.x)), length_y(std::fabs(direction.y)), cross_x(0.5f / length_x),
         cross_y(0.5f / length_y), t_out(cross_x < cross_y ? cross_x : cross_y) {}
@@ -132,13 +132,13 @@ struct RayWalk {
 inline float lowest(float dz, float t_in, float t_out) { return kEyeHeight + dz * (dz < 0 ? t_out : t_in); }
 
 // Puts into `hit` what of a cell's boxes and object a ray meets before it.
-void hit_boxes(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit);
+void hit_boxes(const SolidsView& view, const Vec3& direction, int cell, float t_in, float t_out, Hit& hit);
 
 // The first thing that a ray from the eye meets in one cell of its way; false for nothing.
-inline bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered,
+inline bool hit_in_cell(const SolidsView& view, const Vec3& direction, int cell, float t_in, float t_out, Face entered,
                         Hit& hit) {
   constexpr float kNone = std::numeric_limits<float>::infinity();
-  const KitchenScene::Column& solid = view.scene->columns[size_t(cell)];
+  const KitchenSolids::Column& solid = view.solids->columns[size_t(cell)];
   const float z_in = kEyeHeight + t_in * direction.z, z_out = kEyeHeight + t_out * direction.z;
   hit = {kNone, cell, Material::kFloor, Face::kTop, kNoObject};
   if (z_in >= solid.top) {
@@ -162,6 +162,6 @@ inline bool hit_in_cell(const SceneView& view, const Vec3& direction, int cell, 
 }
 
 // The first thing that a ray from the eye above `cell` meets; walls, floor and ceiling let none pass.
-Hit trace(const SceneView& view, int cell, const Vec3& direction);
+Hit trace(const SolidsView& view, int cell, const Vec3& direction);
 
 }  // namespace synpo

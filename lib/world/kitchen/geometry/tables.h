@@ -1,5 +1,5 @@
-// What the rules of the kitchens run on: tables over the poses of the agent, made once per kitchen. They know no
-// geometry, so that they can be filled from a plan (kitchen_geometry.h) or from a file.
+// The tables that the rules of the kitchens run on, over the poses of the agent, made once per kitchen. They know no
+// geometry, so that they can be filled from a plan (make_tables.h) or from a file.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -38,7 +38,7 @@ struct KitchenSeenLists {
   }
 };
 
-// What is in sight from every pose while the doors stand in one way.
+// The things in sight from every pose while the doors stand in one way.
 struct KitchenSight {
   KitchenSeenLists slots, receptacles;
 };

@@ -74,14 +74,14 @@ void extract_features(const uint8_t* rgb, float* features) {
     }
 }
 
-const float* view_features(const KitchenScene& scene, const KitchenFrame& frame) {
+const float* view_features(const KitchenSolids& solids, const KitchenFrame& frame) {
   thread_local const std::unique_ptr<KeptView[]> kept(new KeptView[kKeptViews]);
-  KeptView& view = kept[hash_of(scene.hash, frame) % kKeptViews];
-  if (!view.filled || view.kitchen != scene.hash || view.frame != frame) {
+  KeptView& view = kept[hash_of(solids.hash, frame) % kKeptViews];
+  if (!view.filled || view.kitchen != solids.hash || view.frame != frame) {
     uint8_t rgb[kSmallView * kSmallView * 3];
-    render_small(scene, frame, rgb);
+    render_small(solids, frame, rgb);
     extract_features(rgb, view.features);
-    view.kitchen = scene.hash;
+    view.kitchen = solids.hash;
     view.frame = frame;
     view.filled = true;
   }

@@ -20,6 +20,6 @@ void extract_features(const uint8_t* rgb, float* features);
 
 // The features of a view, which stay until the thread's next call. Recent views are kept per thread; what comes out
 // does not depend on that.
-const float* view_features(const KitchenScene& scene, const KitchenFrame& frame);
+const float* view_features(const KitchenSolids& solids, const KitchenFrame& frame);
 
 }  // namespace synpo

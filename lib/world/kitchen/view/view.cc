@@ -4,35 +4,35 @@
 #include <cstring>
 #include <limits>
 
-#include "world/kitchen/view/colours.h"
+#include "world/kitchen/view/hit_colour.h"
 
 namespace synpo {
 namespace {
 
 constexpr int kHeadings = 4, kHorizons = 3;
 
-// A scene with the objects of a frame put into it.
+// Solids with the objects of a frame put among them.
 class Furnished {
  public:
-  Furnished(const KitchenScene& scene, const KitchenFrame& frame) : cell_(scene_cell(frame.eye.row, frame.eye.column)) {
-    std::memcpy(reach_, scene.reach.data(), size_t(scene.cells) * sizeof(float));
-    std::memset(occupants_, kNoObject, size_t(scene.cells));
+  Furnished(const KitchenSolids& solids, const KitchenFrame& frame) : cell_(ray_cell(frame.eye.row, frame.eye.column)) {
+    std::memcpy(reach_, solids.reach.data(), size_t(solids.cells) * sizeof(float));
+    std::memset(occupants_, kNoObject, size_t(solids.cells));
     for (size_t i = 0; i < kKitchenObjects; ++i) {
       if (frame.objects[i] < 0) continue;
       const size_t cell = size_t(frame.objects[i]);
       occupants_[cell] = uint8_t(i);
-      reach_[cell] = std::max(reach_[cell], scene.columns[cell].top + kObjectReach);
+      reach_[cell] = std::max(reach_[cell], solids.columns[cell].top + kObjectReach);
     }
-    view_ = {&scene, float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f, reach_, occupants_};
+    view_ = {&solids, float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f, reach_, occupants_};
   }
   Furnished(const Furnished&) = delete;
-  const SceneView& view() const { return view_; }
+  const SolidsView& view() const { return view_; }
   int cell() const { return cell_; }  // of the eye
 
  private:
-  float reach_[kSceneCells];
-  uint8_t occupants_[kSceneCells];
-  SceneView view_;
+  float reach_[kRayCells];
+  uint8_t occupants_[kRayCells];
+  SolidsView view_;
   int cell_;
 };
 
@@ -116,8 +116,8 @@ class StoredRays {
 
 }  // namespace
 
-void render(const KitchenScene& scene, const KitchenFrame& frame, int width, int height, uint8_t* rgb) {
-  const Furnished room(scene, frame);
+void render(const KitchenSolids& solids, const KitchenFrame& frame, int width, int height, uint8_t* rgb) {
+  const Furnished room(solids, frame);
   const Lens lens(frame.eye, width, height);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column, rgb += 3) {
@@ -127,8 +127,8 @@ void render(const KitchenScene& scene, const KitchenFrame& frame, int width, int
     }
 }
 
-void render_small(const KitchenScene& scene, const KitchenFrame& frame, uint8_t* rgb) {
-  const Furnished room(scene, frame);
+void render_small(const KitchenSolids& solids, const KitchenFrame& frame, uint8_t* rgb) {
+  const Furnished room(solids, frame);
   const StoredRays& stored = StoredRays::of(frame.eye);
   const float* reach = room.view().reach + room.cell();
   for (const StoredRays::Ray& ray : stored.rays()) {

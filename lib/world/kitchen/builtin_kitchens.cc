@@ -1,4 +1,4 @@
-#include "world/kitchen/plan.h"
+#include "world/kitchen/builtin_kitchens.h"
 
 #include <algorithm>
 #include <cmath>
@@ -134,8 +134,8 @@ std::string attempt(const Size& size, Random& random) {
 }
 
 bool good(const Kitchen& kitchen) {
-  const KitchenScene scene(kitchen);
-  const KitchenTables tables = kitchen_tables(kitchen, scene);
+  const KitchenSolids solids(kitchen);
+  const KitchenTables tables = kitchen_tables(kitchen, solids);
   if (int(tables.slots.size()) < kFewestSlots) return false;
   const KitchenPlanner planner(kitchen.name, tables);
   return true;

@@ -1,4 +1,4 @@
-#include "world/kitchen/view/colours.h"
+#include "world/kitchen/view/hit_colour.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,7 +73,7 @@ Colour wall(const KitchenPalette& palette, int cell, Face face, const Vec3& at) 
   if (at.z < kBandTop) return palette.band;
   if (at.z < kPanelLow || at.z > kPanelHigh) return palette.wall;
   const bool along_row = faces_north_or_south(face);
-  const int row = cell / kSceneStride, column = cell % kSceneStride;
+  const int row = cell / kRayStride, column = cell % kRayStride;
   const int along = (along_row ? column : row) / kPanelCells, line = along_row ? row : column;
   const uint32_t mixed = uint32_t((along * kMaxKitchenSide + line) * 4 + int(face)) * 2654435761u;
   const Colour& panel = palette.panels[mixed >> 29];
@@ -85,16 +85,16 @@ Colour wall(const KitchenPalette& palette, int cell, Face face, const Vec3& at) 
 
 }  // namespace
 
-Colour colour_of_hit(const SceneView& view, int doors, const Hit& hit, const Vec3& direction, float length) {
-  const KitchenScene& scene = *view.scene;
-  const KitchenPalette& palette = scene.palette;
+Colour colour_of_hit(const SolidsView& view, int doors, const Hit& hit, const Vec3& direction, float length) {
+  const KitchenSolids& solids = *view.solids;
+  const KitchenPalette& palette = solids.palette;
   const Vec3 at = {view.eye_x + hit.t * direction.x, view.eye_y + hit.t * direction.y,
                    kEyeHeight + hit.t * direction.z};
   Colour colour = {};
   switch (hit.material) {
     case Material::kFloor:
-      colour = palette.floor[size_t(hit.cell / kSceneStride + hit.cell) % 2];
-      if (scene.columns[size_t(hit.cell)].bottom > 0) colour = mix(colour, 0.6f);  // under a table
+      colour = palette.floor[size_t(hit.cell / kRayStride + hit.cell) % 2];
+      if (solids.columns[size_t(hit.cell)].bottom > 0) colour = mix(colour, 0.6f);  // under a table
       break;
     case Material::kCeiling:
       colour = kCeilingColour;
@@ -112,10 +112,10 @@ Colour colour_of_hit(const SceneView& view, int doors, const Hit& hit, const Vec
       colour = palette.table;
       break;
     case Material::kFridge:
-      colour = fridge(scene.receptacles[kFridge], doors >> kFridge & 1, hit.face, at);
+      colour = fridge(solids.receptacles[kFridge], doors >> kFridge & 1, hit.face, at);
       break;
     case Material::kMicrowave:
-      colour = microwave(scene.receptacles[kMicrowave], doors >> kMicrowave & 1, hit.face, at);
+      colour = microwave(solids.receptacles[kMicrowave], doors >> kMicrowave & 1, hit.face, at);
       break;
     case Material::kSink:
       colour = mix(kReceptacleColours[kSink], at.z < kCounterHeight - in_cells(0.1f) ? 0.7f : 1.0f);

@@ -40,8 +40,8 @@ inline KitchenSeenLists seen_lists(const std::vector<std::vector<KitchenSeen>>& 
 }
 
 // Five poses in a ring that rotating right walks along and rotating left back; nothing else moves. From pose 0 nothing
-// is in sight, from 1 slots 2 and 1, equally near, and behind them 0; from 2 the Sink and behind it the Fridge; from 3
-// the Fridge, the Microwave behind it and slot 3; from 4 the Microwave.
+// is in sight, from 1 slots 2 and 1, equally near, and farther off 0; from 2 the Sink and farther off the Fridge; from
+// 3 the Fridge, the Microwave farther off and slot 3; from 4 the Microwave.
 inline KitchenTables ring_tables() {
   KitchenTables tables;
   for (int16_t i = 0; i < 5; ++i) {
