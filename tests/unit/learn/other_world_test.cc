@@ -27,7 +27,8 @@ std::string expert_lines(int count) {
 
 ImitationOptions small_options(bool single_steps) {
   ImitationOptions options = recipe(single_steps ? "fast" : "paper");
-  options.feature = options.basis = options.embedding = options.hidden = 8;
+  PolicyShape& sizes = options.network;
+  sizes.feature = sizes.basis = sizes.embedding = sizes.hidden = 8;
   options.memory = 6;
   options.fill = 4;
   options.trajectories = 5;
