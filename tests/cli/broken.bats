@@ -6,9 +6,7 @@ setup_file() {
 }
 
 setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,full.ckpt,m.tsv} .
+    set_up pairs.tsv two.tsv e.jsonl a.ckpt full.ckpt m.tsv
     printf '\211PNG\r\n\032\n\0\0\0\15IHDR\0\0\0\20\0\0\0\20\10\2\0\0\0' >picture.png
     : >empty
 }

@@ -11,10 +11,14 @@ TOOLS="synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo
 TINY=(-q --batch-states 64 --fill 20 --running 64 --memory 30)
 TINY_PAPER=(-q --recipe paper --trajectories 4 --memory 30)
 
-setup() {
+# set_up FILE...: a fresh working directory, with links to these files that setup_file made.
+set_up() {
     mkdir "$BATS_TEST_TMPDIR/work"
     cd "$BATS_TEST_TMPDIR/work" || exit
+    for file in "$@"; do ln -s "$BATS_FILE_TMPDIR/$file" .; done
 }
+
+setup() { set_up; }
 
 # What one file's tests share, made once: pairs.tsv, e.jsonl (60 trajectories of them), a.ckpt (stripped), m.tsv.
 make_inputs() {

@@ -1,12 +1,7 @@
 load common
 
 setup_file() { make_inputs; }
-
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
-}
+setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
 
 @test "1 and 2 threads: the same bytes, matrix and records" {
     synpo-eval -q -p two.tsv -n 9 -j 1 --record one.jsonl <a.ckpt >one

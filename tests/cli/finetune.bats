@@ -4,11 +4,8 @@ load common
 PPO=(-q --lanes 4 --rollout 8 --minibatches 2 --epochs 2 --value-warm-up 1)
 
 setup_file() { make_inputs; }
-
 setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt} .
+    set_up pairs.tsv two.tsv e.jsonl a.ckpt
     printf 'env\ttask\nmap5\tR-B\nmap1\tP-O\n' >new.tsv
     synpo-gen-expert -p new.tsv --per-pair 1 >demos.jsonl
 }

@@ -8,30 +8,10 @@ setup_file() {
     synpo-gen-expert -n 1 >grid.jsonl
 }
 
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{k,grid}.jsonl .
-}
-
-# differ COMMAND OPTIONS...: pictures of kitchens, each with options of its own, twice the same bytes, and no two alike.
-differ() {
-    local command=$1
-    shift
-    for options in "$@"; do
-        # shellcheck disable=SC2086
-        synpo-render "$command" -w kitchen $options >a.png
-        # shellcheck disable=SC2086
-        synpo-render "$command" -w kitchen $options -o b.png
-        cmp a.png b.png
-        is_png a.png
-        md5sum <a.png >>sums
-    done
-    [ "$(sort -u sums | wc -l)" -eq $# ]
-}
+setup() { set_up k.jsonl grid.jsonl; }
 
 @test "map: all kitchens, those named, in columns" {
-    differ map "" "FloorPlan1" "FloorPlan25 FloorPlan1" "FloorPlan1 FloorPlan25" "--columns 1" "--title Kitchens" "--scale 1"
+    all_differ "map -w kitchen" "" "FloorPlan1" "FloorPlan25 FloorPlan1" "FloorPlan1 FloorPlan25" "--columns 1" "--title Kitchens" "--scale 1"
 }
 
 @test "map --ansi: the plans as text" {
@@ -44,13 +24,13 @@ differ() {
 }
 
 @test "view: kitchens, tasks, seeds, steps, histories" {
-    differ view "" "-e FloorPlan25" "-t Mug-Sink" "-s 1" "--episode 1" "--steps 2" "--history" "--steps 2 --history" "--title View" "--scale 1"
+    all_differ "view -w kitchen" "" "-e FloorPlan25" "-t Mug-Sink" "-s 1" "--episode 1" "--steps 2" "--history" "--steps 2 --history" "--title View" "--scale 1"
     synpo-render view -w kitchen -e FloorPlan1 -t Container-Fridge -s 0 --steps 0 >b.png
     synpo-render view -w kitchen | cmp - b.png
 }
 
 @test "episode: the picture, its line, strip and title" {
-    differ episode "k.jsonl" "--line 2 k.jsonl" "--strip 0 k.jsonl" "--strip 4 k.jsonl" "--title Another k.jsonl" "--scale 1 k.jsonl"
+    all_differ "episode -w kitchen" "k.jsonl" "--line 2 k.jsonl" "--strip 0 k.jsonl" "--strip 4 k.jsonl" "--title Another k.jsonl" "--scale 1 k.jsonl"
     synpo-render episode -w kitchen k.jsonl >a.png
     synpo-render episode -w kitchen <k.jsonl | cmp - a.png
 }

@@ -5,12 +5,7 @@ METHODS=("synpo" "synpo --action-embedding 3" "mtl" "mlp" "modulenet" "sf --sf-l
 SMALL=(--feature 16 --basis 12 --embedding 10 --hidden 24)
 
 setup_file() { make_inputs; }
-
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt} .
-}
+setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
 
 @test "every method: resumed equals unbroken, 1 and 2 threads" {
     for method in "${METHODS[@]}"; do

@@ -1,11 +1,8 @@
 load common
 
 setup_file() { make_inputs; }
-
 setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
+    set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv
     printf 'update\tstates\tseen_success\tunseen_success\n1\t9\t0.5\tNA\n2\t18\t0.7\t0.4\n' >run.log
 }
 

@@ -1,4 +1,5 @@
 load common
+load render/pictures
 
 @test "split | gen-expert | train | eval | summary | heatmap, as in the README" {
     synpo-matrix split --envs 3 --tasks 3 -n 5 -s 1 >pairs.tsv
@@ -13,8 +14,7 @@ load common
     [ "$(wc -l <log.tsv)" -eq 4 ]
     awk -F '\t' 'NR > 1 { pairs += 1; seen += $11; episodes += $12 } END { exit !(pairs == 9 && seen == 5 && episodes == 18) }' synpo.tsv
     grep -q unseen summary.txt
-    head -c 8 synpo.png >magic
-    printf '\211PNG\r\n\032\n' | cmp magic -
+    is_png synpo.png
 }
 
 @test "the matrix has the columns of synpo-matrix(5), and merge and summary read what eval wrote" {
@@ -46,14 +46,7 @@ load common
     make_inputs
     for command in "heatmap m.tsv" map "map map3 map19" "view -e map3 --steps 5" "view --window 0 --history"; do
         # shellcheck disable=SC2086
-        synpo-render $command >a.png
-        # shellcheck disable=SC2086
-        synpo-render $command -o b.png
-        cmp a.png b.png
-        head -c 8 a.png >magic
-        printf '\211PNG\r\n\032\n' | cmp magic -
-        tail -c 8 a.png >end
-        printf 'IEND\256B`\202' | cmp end -
+        drawn $command
     done
 }
 

@@ -17,11 +17,7 @@ setup_file() {
     printf 'env\ttask\nFloorPlan10\tMug-Sink\n' >one.tsv
 }
 
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{scenes,two,others,e.jsonl,a.ckpt,one.tsv} .
-}
+setup() { set_up scenes two others e.jsonl a.ckpt one.tsv; }
 
 @test "a dump of AI2-THOR's controller is a world: the expert succeeds in every pair, in natural order" {
     synpo-gen-expert -w kitchen:scenes --per-pair 2 >all.jsonl

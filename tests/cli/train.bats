@@ -1,12 +1,7 @@
 load common
 
 setup_file() { make_inputs; }
-
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt} .
-}
+setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
 
 @test "1 and 2 threads: the same checkpoint, both recipes" {
     synpo-train "${TINY[@]}" -n 4 -j 1 <e.jsonl >one

@@ -1,4 +1,5 @@
 load ../common
+load pictures
 
 setup_file() {
     make_inputs
@@ -9,22 +10,7 @@ setup_file() {
     synpo-train "${TINY[@]}" -n 2 -p pairs.tsv --log blind.log --report 1 <e.jsonl >/dev/null
 }
 
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{run-1.log,run-2.log,blind.log} .
-}
-
-# drawn ARGUMENT...: a whole PNG, the same bytes twice, in a.png.
-drawn() {
-    synpo-render curves "$@" >a.png
-    synpo-render curves "$@" -o b.png
-    cmp a.png b.png
-    head -c 8 a.png >magic
-    printf '\211PNG\r\n\032\n' | cmp magic -
-    tail -c 8 a.png >end
-    printf 'IEND\256B`\202' | cmp end -
-}
+setup() { set_up run-1.log run-2.log blind.log; }
 
 # size_of FILE: its width and height in pixels.
 size_of() { od -An -tu1 -j16 -N8 "$1" | awk '{ print $3 * 256 + $4, $7 * 256 + $8 }'; }
@@ -36,15 +22,15 @@ table() {
 }
 
 @test "logs of synpo-train are drawn, against every axis, every kind of column" {
-    drawn run-1.log
+    drawn curves run-1.log
     [ "$(size_of a.png)" = "760 540" ]
-    drawn -x states -y reward SynPo=run-1.log,run-2.log
-    drawn -x minutes run-1.log run-2.log --mark 'unseen:82.1=paper' --title 'Two runs'
+    drawn curves -x states -y reward SynPo=run-1.log,run-2.log
+    drawn curves -x minutes run-1.log run-2.log --mark 'unseen:82.1=paper' --title 'Two runs'
     [ "$(size_of a.png)" = "1240 540" ]
-    drawn -x minutes --rate 100 --panels 1 --band range A=run-1.log A=run-2.log B=run-1.log --size 300x200 --scale 1
+    drawn curves -x minutes --rate 100 --panels 1 --band range A=run-1.log A=run-2.log B=run-1.log --size 300x200 --scale 1
     [ "$(size_of a.png)" = "300 200" ]
-    for column in loss policy reward_loss env task right_move learning_rate states_per_s; do drawn -y $column run-1.log blind.log; done
-    drawn --pairs unseen --x-range :5 --y-range 0:50 run-1.log
+    for column in loss policy reward_loss env task right_move learning_rate states_per_s; do drawn curves -y $column run-1.log blind.log; done
+    drawn curves --pairs unseen --x-range :5 --y-range 0:50 run-1.log
 }
 
 @test "a log on standard input; every way to give runs a label" {

@@ -1,20 +1,17 @@
 load ../common
 load pictures
 
-setup_file() { make_inputs; }
+CHECKPOINT=a.ckpt
 
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{e.jsonl,a.ckpt} .
-}
+setup_file() { make_inputs; }
+setup() { set_up e.jsonl a.ckpt; }
 
 @test "embeddings: components and distances, of what was trained or of all" {
     all_differ embedding "" "--all" "--kind distance" "--kind distance --all" "--kind distance --metric euclidean" "--title Embeddings" "--scale 1"
 }
 
 @test "embeddings: wrong options 64, no checkpoint 65, missing 66" {
-    refuses_what_is_no_checkpoint synpo-render embedding
+    refuses_broken_checkpoints synpo-render embedding
     fails 64 synpo-render embedding --kind tsne a.ckpt
     says "expected pca or distance"
     fails 64 synpo-render embedding --metric euclidean a.ckpt

@@ -2,12 +2,7 @@ load ../common
 load pictures
 
 setup_file() { make_inputs; }
-
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{e.jsonl,a.ckpt,two.tsv} .
-}
+setup() { set_up e.jsonl a.ckpt two.tsv; }
 
 @test "trajectories of the expert and of a policy are drawn, the same bytes twice" {
     synpo-eval -q -p two.tsv -n 2 --record r.jsonl <a.ckpt >/dev/null

@@ -1,4 +1,5 @@
 load ../common
+load pictures
 
 # matrix SIDE [SCALE]: SIDE x SIDE pairs, a third of them seen.
 matrix() {
@@ -7,17 +8,6 @@ matrix() {
         print "env", "task", "seen", "episodes", "successes"
         for (e = 1; e <= n; e++) for (t = 1; t <= n; t++) print "env" e, "task" t, (e + t) % 3 == 0, 20, (e * scale + t * 5) % 21
     }'
-}
-
-# drawn ARGUMENT...: a whole PNG, the same bytes twice, in a.png.
-drawn() {
-    synpo-render heatmap "$@" >a.png
-    synpo-render heatmap "$@" -o b.png
-    cmp a.png b.png
-    head -c 8 a.png >magic
-    printf '\211PNG\r\n\032\n' | cmp magic -
-    tail -c 8 a.png >end
-    printf 'IEND\256B`\202' | cmp end -
 }
 
 differ() { if cmp -s "$1" "$2"; then complain "$1 and $2 are the same"; fi; }
@@ -29,14 +19,14 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
 @test "every order, with margins, from 1 x 1 to 50 x 50" {
     for side in 1 5 50; do
         matrix $side >m.tsv
-        for order in paper given natural mean cluster; do drawn --order $order --margins m.tsv; done
+        for order in paper given natural mean cluster; do drawn heatmap --order $order --margins m.tsv; done
     done
-    drawn --task-order cluster --env-order mean --no-values --scheme purple-red --title 'Título' m.tsv
+    drawn heatmap --task-order cluster --env-order mean --no-values --scheme purple-red --title 'Título' m.tsv
 }
 
 @test "200 x 200, clustered" {
     matrix 200 >m.tsv
-    drawn --order cluster m.tsv
+    drawn heatmap --order cluster m.tsv
 }
 
 @test "the orders of tasks and environments, as characters" {
@@ -62,7 +52,7 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
 @test "matrices side by side: by file, label, method, seed" {
     matrix 4 >one.tsv
     matrix 4 9 >two.tsv
-    drawn one.tsv two.tsv
+    drawn heatmap one.tsv two.tsv
     cp a.png want
     synpo-render heatmap one=one.tsv two=two.tsv | cmp want -
     synpo-render heatmap one.tsv two=- <two.tsv | cmp want -
@@ -82,8 +72,8 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
     done | awk 'NR == 1 || !/^env\t/' >all.tsv
     fails 65 synpo-render heatmap all.tsv
     says "rows of several methods ('mlp', 'synpo')"
-    drawn --panels method all.tsv
-    drawn --panels seed --method mlp all.tsv
+    drawn heatmap --panels method all.tsv
+    drawn heatmap --panels seed --method mlp all.tsv
     # Those left out are no panels.
     [ "$(ansi --panels method --method mlp all.tsv | grep -cE '^(synpo|mlp)$')" -eq 1 ]
     fails 65 synpo-render heatmap --panels seed --method mtl all.tsv

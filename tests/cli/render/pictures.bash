@@ -7,15 +7,16 @@ is_png() {
     printf 'IEND\256B`\202' | cmp end -
 }
 
-# drawn COMMAND ARGUMENT...: a whole PNG of a.ckpt, the same bytes from the operand and from standard input, in a.png.
+# drawn COMMAND ARGUMENT...: a whole PNG in a.png, the same bytes on standard output and in the file of -o.
+# Where CHECKPOINT is set it is drawn, and the second time it comes from standard input.
 drawn() {
-    synpo-render "$@" a.ckpt >a.png
-    synpo-render "$@" -o b.png <a.ckpt
+    synpo-render "$@" ${CHECKPOINT:+"$CHECKPOINT"} >a.png
+    synpo-render "$@" -o b.png <"${CHECKPOINT:-/dev/null}"
     cmp a.png b.png
     is_png a.png
 }
 
-# all_differ COMMAND OPTIONS...: pictures of the checkpoint, each with options of its own, of which no two are alike.
+# all_differ "COMMAND ARGUMENT..." OPTIONS...: each of the OPTIONS draws a picture, of which no two are alike.
 all_differ() {
     local command=$1
     shift
@@ -27,8 +28,8 @@ all_differ() {
     [ "$(sort -u sums | wc -l)" -eq $# ]
 }
 
-# What is no checkpoint, or not a whole one.
-refuses_what_is_no_checkpoint() {
+# refuses_broken_checkpoints COMMAND...: other files, parts of a checkpoint, none, and two.
+refuses_broken_checkpoints() {
     fails 65 "$@" -o out e.jsonl
     says "not a safetensors file"
     head -c 100000 a.ckpt >part.ckpt

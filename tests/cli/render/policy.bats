@@ -1,13 +1,10 @@
 load ../common
 load pictures
 
-setup_file() { make_inputs; }
+CHECKPOINT=a.ckpt
 
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{e.jsonl,a.ckpt} .
-}
+setup_file() { make_inputs; }
+setup() { set_up e.jsonl a.ckpt; }
 
 @test "a policy in every cell: stages, treasures, histories" {
     all_differ policy "" "--stage 1" "--stage 2" "--stage 2 --pictures 1" "-s 1" "--episode 1" "-e map2" "-t B-G" "--title Policy" "--scale 1"
@@ -18,7 +15,7 @@ setup() {
 }
 
 @test "a policy: unknown maze or task and wrong options 64, no checkpoint 65, missing 66" {
-    refuses_what_is_no_checkpoint synpo-render policy
+    refuses_broken_checkpoints synpo-render policy
     fails 64 synpo-render policy -e nowhere a.ckpt
     says "no maze 'nowhere' in the checkpoint's world"
     fails 64 synpo-render policy -t R-R a.ckpt
