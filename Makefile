@@ -1,18 +1,22 @@
 # synpo: make deps installs what is needed, make builds into build/, make check tests, make demo shows it at work.
+# make V=1 shows the commands.
 
 CXX      ?= g++
-CXXFLAGS ?= -O3
 PREFIX   ?= /usr/local
 B        := build
 
-ALL_CXXFLAGS := -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP $(CXXFLAGS) -Ilib -Itools -isystem /usr/include/eigen3
+# Programs, tables, pictures and tests take longer to compile than to run. CXXFLAGS of the caller come last and win.
+QUICK    := tools lib/draw lib/stats/matrix lib/stats/report tests/unit
+OPTIMISE  = $(if $(filter $(QUICK:%=$(B)/%/%),$@),-O1,-O3)
+ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP \
+               -Ilib -Itools $(INCLUDES) -isystem /usr/include/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
 LIB_SRC  := $(shell find lib -name '*.cc')
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
-# What the compiler is for; this machine where there is none yet (make deps all).
+# The machine that the compiler is for; this one while no compiler is installed (make deps all).
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
 TARGETS  := plain $(if $(filter x86_64,$(MACHINE)),avx2 avx512 amx)
 TARGET_avx2   := -mavx2 -mfma
@@ -30,63 +34,97 @@ PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu
 
 BENCH_PACKAGES := python3-torch libopenblas0-openmp
 
+# ccache compiles nothing twice, and does without precompiled headers.
+ifeq ($(findstring ccache,$(CXX)),)
+STD     := $(B)/std.h.gch/O1.gch $(B)/std.h.gch/O3.gch
+USE_STD := -include $(B)/std.h
+endif
+
+ifeq ($(V),1)
+Q   :=
+say :=
+else
+Q   := @
+say = @printf '%-4s %s\n' '$(1)' '$(2)'
+endif
+
 # Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs them.
 MAKEFLAGS += -j$(shell nproc)
 ifneq ($(filter deps,$(MAKECMDGOALS)),)
-$(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ) $(B)/tests/bench/synpo-bench.o: | deps
+$(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ) $(B)/tests/bench/synpo-bench.o $(STD): | deps
 endif
 ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
 bench check-torch: | deps-bench
 endif
 
-.PHONY: all lib check bench demo gallery deps deps-bench install clean check-torch
+.PHONY: all lib check lint bench demo gallery deps deps-bench install clean check-torch
 all: $(TOOLS:%=$(B)/%)
+	@echo "The programs are in $(B)/: $(TOOLS)"
 lib: $(B)/libsynpo.a
 
 $(B)/libsynpo.a: $(LIB_OBJ)
-	rm -f $@
-	@ar rcs $@ $^
+	$(call say,AR,$@)
+	$(Q)rm -f $@ && ar rcs $@ $^
 
 # Every tool is one file of its name; those of several commands have a folder of them.
 define TOOL_RULE
 $(B)/$(1): $(patsubst %.cc,$(B)/%.o,tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc)) $(B)/libsynpo.a
-	$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(OPENCV_LIBS))
+	$$(call say,LINK,$$@)
+	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(OPENCV_LIBS))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
 
 $(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a
-	$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS)
+	$(call say,LINK,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS)
 
 $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
-	$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(OPENCV_LIBS)
+	$(call say,LINK,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(OPENCV_LIBS)
 
-# Tests run for seconds and are compiled for minutes.
-$(TEST_OBJ): ALL_CXXFLAGS += -O1 -Itests/unit
+$(TEST_OBJ): INCLUDES += -Itests/unit
 
 # Eigen, the yardstick there, knows no dispatch at run time.
-$(B)/tests/bench/synpo-bench.o: ALL_CXXFLAGS += -march=native
+$(B)/tests/bench/synpo-bench.o: OPTIMISE = -O3 -march=native
 
 # Only lib/draw/canvas and lib/draw/vision, and the tests of drawing, see OpenCV.
-$(B)/lib/draw/canvas/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: ALL_CXXFLAGS += $(OPENCV_CFLAGS)
+$(B)/lib/draw/canvas/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(OPENCV_CFLAGS)
 
 # Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same level.
 $(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
 	@mkdir -p $(@D)
-	$(CXX) $(ALL_CXXFLAGS) -O3 -Wno-psabi $(TARGET_$*) -DSYNPO_TARGET=$* -c -o $@ $<
+	$(call say,CXX,$< for $*)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -O3 -Wno-psabi $(TARGET_$*) -DSYNPO_TARGET=$* -c -o $@ $<
 
-$(B)/%.o: %.cc
+$(B)/%.o: %.cc | $(STD)
 	@mkdir -p $(@D)
-	$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
+	$(call say,CXX,$<)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) $(USE_STD) -c -o $@ $<
+
+# A third of the time of most files is that of reading these. Not for the kernels, which share no code with the rest.
+$(B)/std.h:
+	@mkdir -p $(@D)
+	@printf '#include <%s>\n' algorithm array cmath cstdint cstring functional map memory optional set sstream string \
+	    unordered_map unordered_set vector > $@
+$(STD): $(B)/std.h.gch/%.gch: $(B)/std.h
+	@mkdir -p $(@D)
+	$(call say,CXX,$< -$*)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -x c++-header -o $@ $<
+$(B)/std.h.gch/O1.gch: OPTIMISE = -O1
 
 $(B)/builtin_maps.cc: $(MAPS) Makefile
 	@mkdir -p $(@D)
 	@{ echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
 	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; echo '};'; echo '}'; } > $@
 $(B)/builtin_maps.o: $(B)/builtin_maps.cc
-	$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
+	$(call say,CXX,$<)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
 
 check: all $(B)/unit-tests
 	scripts/check $(B)
+
+lint:
+	scripts/lint
 
 check-torch: $(B)/unit-tests
 	tests/torch/check $(B)
@@ -103,7 +141,7 @@ demo: all
 deps:
 	scripts/deps $(PACKAGES)
 
-# What bench and check-torch compare with. Debian's PyTorch takes any BLAS; with the reference one it crawls.
+# PyTorch, for bench and check-torch. Debian's PyTorch takes any BLAS; with the reference one it crawls.
 deps-bench:
 	scripts/deps $(BENCH_PACKAGES)
 

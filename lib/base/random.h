@@ -6,7 +6,7 @@
 
 namespace synpo {
 
-// What a stream of random numbers is used for; two purposes never share numbers.
+// The use of a stream of random numbers; two purposes never share numbers.
 enum class Purpose : uint32_t {
   kPairOrder = 1,
   kEpisodeStart,

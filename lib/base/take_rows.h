@@ -5,7 +5,7 @@
 
 namespace synpo {
 
-// `rows` of values [*, width], one behind another.
+// `rows` of values [*, width], one after another.
 template <class T, class Row>
 std::vector<T> gathered(const std::vector<T>& values, const std::vector<Row>& rows, size_t width = 1) {
   std::vector<T> result(rows.size() * width);

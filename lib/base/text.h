@@ -8,12 +8,12 @@
 
 namespace synpo {
 
-// Bytes of the character at `at`; 0 where there is none that is well formed (no overlong form, no surrogate, at most
+// Bytes of the character at `at`; 0 where no well-formed one begins (no overlong form, no surrogate, at most
 // U+10FFFF).
 size_t utf8_length(std::string_view text, size_t at);
 
 // Where the first byte stands that is not part of valid UTF-8 or that is a control character other than a tab; npos
-// when there is none.
+// when there is no such byte.
 size_t first_bad_byte(std::string_view text);
 
 // What keeps `name` from standing wherever environments, tasks and methods are named, which is 1 to kLongestName bytes
@@ -27,10 +27,10 @@ bool natural_less(const std::string& a, const std::string& b);
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
 
-// "a, b or c", as a sentence names choices; "" for none.
+// "a, b or c", as a sentence names choices; "" for an empty list.
 std::string alternatives(const std::vector<std::string>& words);
 
-// Reads the whole text as a number; false, and `value` is anything, where it is none or does not fit.
+// Reads the whole text as a number; false, and `value` is anything, where it is not a number or does not fit.
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/files/io.h"
 #include "format/safetensors.h"
 
 namespace synpo {

@@ -171,7 +171,7 @@ void write_matrix(Output& output, const Matrix& matrix) {
          " columns that are none of this format's, at most ", kTsvColumns - std::size(kColumns), " can be read");
   if (matrix.extra_columns.size() * matrix.rows.size() > kMatrixExtraFields)
     fail(Exit::kData, "a matrix with more than ", kMatrixExtraFields,
-         " fields in columns that are none of this format's cannot be read");
+         " fields in columns that are not of this format cannot be read");
   TsvWriter writer(output);
   for (int column = 0; column <= kEnvHash; ++column)
     if (column == kReward        ? rewards

@@ -51,8 +51,8 @@ class TsvLog {
 const std::vector<std::string>& run_log_columns();
 std::vector<double> run_log_values(const RunLogRow& row);
 
-// What a log's rows are put against. Minutes are of training up to the row: those of resumed runs are added up, and
-// updates that were done again count once.
+// The axis that a log's rows are put against. Minutes are of training up to the row: those of resumed runs are added
+// up, and updates that were done again count once.
 enum class RunLogAxis { kUpdates, kStates, kMinutes };
 
 struct RunLogTable {

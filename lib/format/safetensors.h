@@ -4,11 +4,9 @@
 #include <cstdint>
 #include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "base/files/io.h"
-#include "base/half.h"
 
 namespace synpo {
 

@@ -5,8 +5,10 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "base/half.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "format/safetensors.h"
 
 namespace synpo {
 namespace {

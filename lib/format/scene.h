@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "format/safetensors.h"
+#include "base/files/io.h"
 
 namespace synpo {
 
@@ -25,9 +25,9 @@ struct Scene {
   std::vector<int32_t> objects;              // [L, kSceneObjects, 2] row, column
   std::vector<int32_t> object_distance;      // [L, kSceneDoors, P, kSceneObjects] millimetres, -1 where not visible
   std::vector<int32_t> receptacle_distance;  // [L, kSceneDoors, P, kSceneReceptacles] likewise
-  std::vector<int32_t> view;  // [L, kSceneDoors, P, kSceneObjects + 1] rows of `features`, -1 where there is none
-  bool halves = true;         // features are F16, else F32
-  std::string features;       // [N, kSceneFeatures], as the file has it
+  std::vector<int32_t> view;                 // [L, kSceneDoors, P, kSceneObjects + 1] rows of `features`, -1: no row
+  bool halves = true;                        // features are F16, else F32
+  std::string features;                      // [N, kSceneFeatures], as the file has it
 
   size_t pose_count() const { return poses.size() / 4; }
   size_t layout_count() const { return objects.size() / (kSceneObjects * 2); }

@@ -1,6 +1,6 @@
 // The inner loops of training and inference, once for every kind of processor, chosen when the program starts.
 //
-// Everything in this room but kernels.h and select.cc is compiled several times, each time for another target
+// Everything in this module but kernels.h and select.cc is compiled several times, each time for another target
 // (target.cc), and works on plain arrays: no memory is taken here and no threads are started. T is float or double;
 // pictures are NHWC.
 //
@@ -16,8 +16,8 @@ namespace synpo {
 
 enum class Op { kAsIs, kTransposed };
 
-// Rows of the right matrix of a product that are packed together: what is packed of rows from a multiple of it on
-// stands behind packed_size() of the rows before, the same as if it were packed alone.
+// Rows of the right matrix of a product that are packed together: rows from a multiple of it on are packed as if they
+// were alone, and lie at the offset packed_size() of the rows before them.
 constexpr int kPackedRows = 256;
 
 // A tensor of a 3-tap convolution's transformed form (bilinear.h): [products, rows, channels], `stride` rows from
@@ -35,7 +35,7 @@ struct Transform {
   void (*outputs_adjoint)(TileShape, const T* dy, T* doutputs);
 };
 
-// What one step of Adam does to count values: g = gradient + decay * parameter, m and v its moments,
+// One step of Adam, on count values: g = gradient + decay * parameter, m and v its moments,
 // parameter -= rate * m / (sqrt(v) * correction + epsilon); average (may be null) = keep * average + (1 - keep) *
 // parameter.
 template <class T>

@@ -1,5 +1,7 @@
 #include "nn/adam.h"
 
+#include <cmath>
+
 #include "kernel/kernels.h"
 
 namespace synpo {

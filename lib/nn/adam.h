@@ -1,6 +1,5 @@
 // Adam (Kingma and Ba 2014) with L2 weight decay added to the gradient, over a flat array.
 #pragma once
-#include <cmath>
 #include <cstdint>
 
 #include "base/parallel.h"

@@ -21,7 +21,7 @@ void rmsprop_step(Parallel& parallel, const RmsPropOptions& options, size_t coun
 template <class T>
 double sum_of_squares(Parallel& parallel, size_t count, const T* values);
 
-// What a gradient of this length is multiplied with, so that it is no longer than `limit`.
+// The factor for a gradient of this length, so that it is no longer than `limit`.
 double clip_factor(double length, double limit);
 
 }  // namespace synpo

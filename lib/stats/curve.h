@@ -19,7 +19,7 @@ enum class Band { kNone, kSd, kRange };
 
 struct MeanCurve {
   std::vector<double> x, mean;
-  std::vector<double> low, high;  // of the band; empty where there is none: one run, or Band::kNone
+  std::vector<double> low, high;  // of the band; empty where no band is drawn: one run, or Band::kNone
   int64_t runs = 0;
   double longest = 0;  // the last x of the longest run; the mean ends with the shortest
 };

@@ -11,14 +11,14 @@ struct Interval {
 
 constexpr double kNormal95 = 1.959963984540054;  // the normal distribution's 97.5 % point
 
-// Wilson's score interval (1927) for the rate behind k successes in n trials; n = 0 gives [0, 1].
+// Wilson's score interval (1927) for the rate that gave k successes in n trials; n = 0 gives [0, 1].
 //   (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n),  p = k/n
 Interval wilson(int64_t k, int64_t n, double z = kNormal95);
 // The same for a mean of rates that is as sure as one rate in `trials` trials, a number that need not be whole; > 0.
 Interval wilson_of_rate(double rate, double trials, double z = kNormal95);
 
-// Newcombe's hybrid score interval (1998, method 10) for the difference p1 - p2 of the rates behind k1 of n1 and k2 of
-// n2, made of Wilson's intervals l to u of each:
+// Newcombe's hybrid score interval (1998, method 10) for the difference p1 - p2 of the rates that gave k1 of n1 and k2
+// of n2, made of Wilson's intervals l to u of each:
 //   d - sqrt((p1 - l1)^2 + (u2 - p2)^2)  to  d + sqrt((u1 - p1)^2 + (p2 - l2)^2),  d = p1 - p2
 // The trials of one are taken as independent of those of the other. n1, n2 > 0.
 Interval newcombe(int64_t k1, int64_t n1, int64_t k2, int64_t n2, double z = kNormal95);

@@ -7,7 +7,7 @@ namespace synpo {
 struct Pca {
   std::vector<double> scores;     // [rows, components]: the rows, less their mean, along the components
   std::vector<double> axes;       // [components, columns], of length 1 and orthogonal
-  std::vector<double> explained;  // [components]: share of the variance, 0 to 1; 0 where there is none
+  std::vector<double> explained;  // [components]: share of the variance, 0 to 1; 0 where nothing varies
 };
 
 // Of `values` [rows, columns], by the singular values of the centred table; the components that explain most come

@@ -268,7 +268,7 @@ double step_multiply_adds() {
   return 3.0 * (policy.encoder().multiply_adds() + recognisers + shape.feature * shape.basis) - first_block;
 }
 
-// What SynPo's head does with the states of some pairs, for any number of actions.
+// The work of SynPo's head on the states of some pairs, for any number of actions.
 class Head {
  public:
   Head(int actions, int action_embedding, int threads)

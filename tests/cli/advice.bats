@@ -1,6 +1,6 @@
 load common
 
-# What an option of the command would help against, and that no other option is named.
+# Messages name the option of the command that would help, and no other.
 
 # overflow TENSOR FILE: the checkpoint with every value of a tensor so large that products of it are infinite.
 overflow() {
@@ -21,12 +21,7 @@ setup_file() {
     synpo-eval -q -p two.tsv -n 1 -s 7 <a.ckpt >seed7.tsv
     overflow theta a.ckpt >huge.ckpt
 }
-
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/* .
-}
+setup() { set_up e.jsonl a.ckpt m.tsv other.jsonl both.tsv seed7.tsv huge.ckpt; }
 
 # The last line on stderr is just this.
 says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] || complain "found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1'"; }

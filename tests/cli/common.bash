@@ -1,4 +1,4 @@
-# What every test file loads: the build directory in PATH, a fresh working directory, and ways to say what should happen.
+# Loaded by every test file: the build directory in PATH, a fresh working directory, and ways to say what should happen.
 bats_require_minimum_version 1.5.0
 
 ROOT=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -20,7 +20,7 @@ set_up() {
 
 setup() { set_up; }
 
-# What one file's tests share, made once: pairs.tsv, e.jsonl (60 trajectories of them), a.ckpt (stripped), m.tsv.
+# make_inputs: the files that one test file's tests share, made once: pairs.tsv, e.jsonl (60 trajectories of them), a.ckpt (stripped), m.tsv.
 make_inputs() {
     cd "$BATS_FILE_TMPDIR" || exit
     synpo-matrix split --envs 3 --tasks 3 -n 5 -s 1 >pairs.tsv
@@ -45,7 +45,7 @@ fails() {
     [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat "$BATS_TEST_TMPDIR/err")"
     tail -n 1 "$BATS_TEST_TMPDIR/err" | grep -q "^$1: ." || complain "$*: found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1: ...'"
     after=$(find . | sort)
-    [ "$before" = "$after" ] || complain "$*: left files behind: $(diff <(echo "$before") <(echo "$after"))"
+    [ "$before" = "$after" ] || complain "$*: left files: $(diff <(echo "$before") <(echo "$after"))"
 }
 
 # says TEXT: the message of the command that failed last holds TEXT.

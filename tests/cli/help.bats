@@ -65,7 +65,7 @@ man_options() {
     done
 }
 
-@test "a missing or unknown command, an operand too many, an argument that is none: 64" {
+@test "a missing or unknown command, an operand too many, an argument that is not a number: 64" {
     for tool in synpo-matrix synpo-render synpo-finetune; do
         fails 64 "$tool"
         fails 64 "$tool" no-such-command

@@ -1,6 +1,6 @@
 load common
 
-# What synpo-matrix(1) makes with awk: 3 x 3, the diagonal unseen and worse.
+# The matrix that synpo-matrix(1) makes with awk: 3 x 3, the diagonal unseen and worse.
 by_hand() {
     awk 'BEGIN {
       OFS = "\t"

@@ -33,9 +33,9 @@ VALUE_HIDDEN = 512
 # --- dump ----------------------------------------------------------------------------------------
 
 def next_values(value, end, cut_value, last_value):
-    """V of the state behind each step, 0 behind a terminal one."""
-    behind = torch.cat([value[1:], last_value[None]])
-    return torch.where(end == TRUNCATED, cut_value, behind) * (end != TERMINATED)
+    """V of the state after each step, 0 after a terminal one."""
+    following = torch.cat([value[1:], last_value[None]])
+    return torch.where(end == TRUNCATED, cut_value, following) * (end != TERMINATED)
 
 
 def advantages(reward, value, end, cut_value, last_value):
@@ -151,9 +151,9 @@ class Learner:
         in_lanes = lambda name: self.worlds[name].view(-1, LANES)
         delta = in_lanes("reward") + GAMMA * next_values(value, in_lanes("end"), value, value[-1]) - value
         keep = (in_lanes("end") == GOES_ON) * (GAMMA * LAMBDA)
-        advantage, behind = torch.empty_like(delta), 0
+        advantage, following = torch.empty_like(delta), 0
         for t in reversed(range(len(delta))):
-            advantage[t] = behind = delta[t] + keep[t] * behind
+            advantage[t] = following = delta[t] + keep[t] * following
         target = advantage + value
         advantage = (advantage - advantage.mean()) / (advantage.std(unbiased=False) + 1e-8)
         made = dict(label=action, taken=action, log_probability=log_probability, advantage=advantage, target=target)

@@ -45,7 +45,7 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 ACTIONS = dict(pictures=5, features=7)
 STRIDES = (2, 2, 2, 1)
-HISTORY, HAND = 4, 16  # views, and numbers about the hand behind them
+HISTORY, HAND = 4, 16  # views, and numbers about the hand after them
 # Widths by sight: of pictures (GridWorld), of features (the kitchens).
 NARROW_HEAD = dict(feature=16, basis=12, embedding=10, hidden=24, action_embedding=0, head_hidden=20, seam=6, envs=4, tasks=5)
 NARROW = dict(pictures=dict(channels=(8, 16, 24, 32), **NARROW_HEAD),
@@ -62,7 +62,7 @@ COMMITTED = dict(narrow="", general=SMALL + "--action-embedding 3", mtl=SMALL + 
                  sf_ce=SMALL + "--method sf --sf-loss ce", temporal=FEATURES, temporal_mlp=FEATURES + "--method mlp")
 REWARD_WEIGHT = 0.01
 DISCOUNT = 0.9
-TERMINAL, UNKNOWN = -1, -2  # in place of the step behind
+TERMINAL, UNKNOWN = -1, -2  # in place of the next step
 ADAM = dict(lr=0.001, betas=(0.9, 0.999), eps=1e-8, weight_decay=0.001)
 ADAM_LIMIT = 2100  # larger tensors get no adam.NAME, which keeps the committed file small
 
@@ -110,7 +110,7 @@ class Encoder(nn.Module):
 
 
 class TemporalEncoder(nn.Module):
-    """psi(s) of Table 3: [N, HISTORY * view + HAND] -> [N, d]. The views stand oldest first; behind them the number of what the hand holds."""
+    """psi(s) of Table 3: [N, HISTORY * view + HAND] -> [N, d]. The views stand oldest first; after them the number of what the hand holds."""
 
     def __init__(self, w):
         super().__init__()
@@ -329,11 +329,11 @@ class SuccessorFeatures(Policy):
         return self.values(self.features(self.encoder(batch["input"]), batch), batch)
 
     def temporal_difference(self, phi, psi, batch):
-        behind = batch["next"].clamp(min=0)
-        psi_behind = psi[behind, batch["label"][behind]] * (batch["next"] != TERMINAL).unsqueeze(1)
+        following = batch["next"].clamp(min=0)
+        psi_next = psi[following, batch["label"][following]] * (batch["next"] != TERMINAL).unsqueeze(1)
         taken = psi[torch.arange(len(psi)), batch["taken"]]
         known = batch["next"] != UNKNOWN
-        return F.mse_loss(taken[known], (phi + DISCOUNT * psi_behind)[known].detach())
+        return F.mse_loss(taken[known], (phi + DISCOUNT * psi_next)[known].detach())
 
     def losses(self, batch):
         feature = self.encoder(batch["input"])
@@ -420,7 +420,7 @@ def random_batch(count, w, rng, pairs=None):
 
 
 def future(batch, w, rng):
-    """What SF's losses ask for besides: the step behind, or what stands in its place, and the planner's values."""
+    """What SF's losses ask for besides: the next step, or what stands in its place, and the planner's values."""
     count = len(batch["env"])
     return dict(next=np.concatenate([[TERMINAL, UNKNOWN], rng.integers(0, count, count - 2)]),
                 planner_q=rng.normal(size=(count, w.actions)).astype(np.float32))
@@ -678,7 +678,7 @@ def report(states, times, choice):
     print(f"{states / statistics.median(times):.0f}")
 
 
-# What the fastest way may depend on.
+# The fastest way may depend on these.
 HEADS = dict(head=("by_sum", "by_bmm", "by_matrix"))
 OPTIONS = dict(pictures=dict(memory_format=("channels_last", "contiguous"), **HEADS), features=dict(unrolled=(False, True), **HEADS))
 

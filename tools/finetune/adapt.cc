@@ -36,13 +36,13 @@ AdaptTargets parse_targets(const std::string& list) {
   AdaptTargets targets;
   std::string rest = list;
   if (!rest.starts_with("embeddings"))
-    throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
+    throw std::invalid_argument("expected embeddings, and +heads or +coefficients after it");
   rest.erase(0, 10);
   while (!rest.empty()) {
     bool* target = rest.starts_with("+heads")          ? &targets.heads
                    : rest.starts_with("+coefficients") ? &targets.coefficients
                                                        : nullptr;
-    if (!target) throw std::invalid_argument("expected embeddings, and +heads or +coefficients behind it");
+    if (!target) throw std::invalid_argument("expected embeddings, and +heads or +coefficients after it");
     *target = true;
     rest.erase(0, target == &targets.heads ? 6 : 13);
   }
@@ -63,7 +63,7 @@ int adapt(int argc, char** argv) {
       .text('w', "world", "WORLD", concat("new environments too: ", alternatives(world_names())).c_str(), world_name)
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
       .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", trajectories, 1, 100000)
-      .call(0, "train", "WHAT", "embeddings, and behind it +heads, +coefficients, or both [embeddings]",
+      .call(0, "train", "WHAT", "embeddings, and after it +heads, +coefficients, or both [embeddings]",
             [&](const std::string& list) { adaptation.targets = parse_targets(list); })
       .real(0, "lr", "X", "learning rate of Adam", adaptation.adam.learning_rate, 0, 1)
       .real(0, "weight-decay", "X", "L2 term added to the gradient", adaptation.adam.weight_decay, 0, 1)

@@ -2,7 +2,7 @@
 // and an exit code.
 //
 // Options are read as GNU's getopt_long reads them: -n 5, -n5, -qn5, --count 5, --count=5, any beginning of a name that
-// no other option shares; options and operands in any order, whatever POSIXLY_CORRECT says; operands alone behind --.
+// no other option shares; options and operands in any order, whatever POSIXLY_CORRECT says; operands alone after --.
 #pragma once
 #include <cstdint>
 #include <functional>

@@ -8,7 +8,7 @@ namespace synpo {
 
 class UnfinishedFolder;
 
-// Writes into a temporary folder beside `path` that takes the name in finish(). Unfinished, it leaves nothing behind. A
+// Writes into a temporary folder beside `path` that takes the name in finish(). Unfinished, nothing of it is left. A
 // folder that cannot be made, or is there and not empty, is kCantCreate; a full disk kIo.
 class OutputFolder {
  public:

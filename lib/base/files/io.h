@@ -53,7 +53,7 @@ class Input {
 };
 
 // Writes to stdout, to a device or a pipe, or to a temporary beside the file, which takes its name in finish(). Links
-// are followed, and a file that is there keeps its rights. Unfinished output to a file leaves nothing behind. A full
+// are followed, and a file that is there keeps its rights. Unfinished output to a file leaves nothing. A full
 // disk is kIo, a file that cannot be made kCantCreate, and so is one whose place no other can take; a reader that went
 // away is Stopped with SIGPIPE.
 class Output {

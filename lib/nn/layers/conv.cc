@@ -8,7 +8,7 @@
 namespace synpo {
 namespace {
 
-// What product p takes of each of the 3 x 3 taps: Weight along rows times Weight along columns.
+// How much product p takes of each of the 3 x 3 taps: Weight along rows times Weight along columns.
 template <class A, class T>
 std::vector<T> taps_of_products() {
   std::vector<T> taps;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "kernel/kernels.h"
 #include "nn/buffer.h"
 #include "nn/gemm.h"
 

@@ -2,9 +2,8 @@
 // gathered while a convolution's output is still in the cache; scaling, addition and ReLU are one pass
 // (kernel/kernels.h).
 #pragma once
+#include <cstddef>
 #include <vector>
-
-#include "nn/buffer.h"
 
 namespace synpo {
 

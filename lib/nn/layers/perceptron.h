@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/parallel.h"
+#include "nn/buffer.h"
 #include "nn/gemm.h"
 #include "nn/init.h"
 #include "nn/layout.h"

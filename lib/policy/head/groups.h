@@ -1,5 +1,6 @@
 // Samples sorted by a key: those of one pair, one label or one module together.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 namespace synpo {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/text.h"
 #include "format/tsv.h"
+#include "stats/matrix/runs.h"
 
 namespace synpo {
 namespace {

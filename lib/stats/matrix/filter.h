@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/files/io.h"
-#include "stats/matrix/runs.h"
+#include "format/matrix.h"
 
 namespace synpo {
 
@@ -26,7 +26,7 @@ struct RowFilter {
 Matrix filter_rows(const Matrix& matrix, const RowFilter& filter);
 
 // A column `task`, then a column per environment, in the orders given; the value of each pair over all runs together,
-// NA where there is none. `measure` is one of measure_kinds(), or episodes, successes, seen.
+// NA where a pair has no value. `measure` is one of measure_kinds(), or episodes, successes, seen.
 bool is_wide_measure(const std::string& name);
 void write_wide(Output& output, const Matrix& matrix, const std::vector<std::string>& envs,
                 const std::vector<std::string>& tasks, const std::string& measure);

@@ -65,7 +65,7 @@ enum class HeatOrder {
   kMean,     // highest success first
   kCluster,  // by average linkage of their success rates
 };
-// Throws std::invalid_argument for a name that is none of paper, given, natural, mean, cluster.
+// Throws std::invalid_argument for a name that is not one of paper, given, natural, mean, cluster.
 HeatOrder find_order(const std::string& name);
 
 struct HeatPanel {

@@ -68,7 +68,7 @@ struct MeasureKind {
   const char* name;
   double (*value)(const Tally&);
   bool rate;                       // of k in n; shown in per cent
-  int digits;                      // behind the point, as shown
+  int digits;                      // after the point, as shown
   int64_t (*count)(const Tally&);  // k of a rate
   double scale() const { return rate ? 100 : 1; }
 };

@@ -135,7 +135,7 @@ int position(const std::vector<std::string>& names, const std::string& name, con
   return int(it - names.begin());
 }
 
-// What is seen of a table of `envs` x `tasks` pairs, as [env * tasks + task].
+// Which pairs are seen of a table of `envs` x `tasks` pairs, as [env * tasks + task].
 std::vector<char> draw_seen(const SplitPlan& plan, int envs, int tasks, int64_t count) {
   std::vector<char> seen(size_t(envs) * tasks, 0);
   std::set<int> single_envs, single_tasks;
@@ -242,7 +242,7 @@ std::vector<std::string> choose_names(const std::string& option, const std::stri
       fail(Exit::kUsage, option, " ", chosen, ": expected 1 to ", names.size(), ", or names");
     return {names.begin(), names.begin() + std::ptrdiff_t(count)};
   }
-  const std::vector<std::string> list = split_names(chosen);
+  std::vector<std::string> list = split_names(chosen);
   for (const std::string& name : list)
     if (std::find(names.begin(), names.end(), name) == names.end())
       fail(Exit::kUsage, option, ": there is no ", quoted(name), ", expected names such as ", names.front(),

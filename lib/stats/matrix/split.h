@@ -47,8 +47,8 @@ std::vector<SplitPair> split_pairs(const SplitPlan& plan);
 // The parts between commas; "" is one empty name.
 std::vector<std::string> split_names(const std::string& list);
 
-// What the option `option` chooses among `names`: all of them (""), the first so many ("5"), or those listed
-// ("map1,map7"), in the order of the list. Throws kUsage for a name that is none of them.
+// The names that the option `option` chooses among `names`: all of them (""), the first so many ("5"), or those listed
+// ("map1,map7"), in the order of the list. Throws kUsage for a name that is not among them.
 std::vector<std::string> choose_names(const std::string& option, const std::string& chosen,
                                       const std::vector<std::string>& names);
 

@@ -8,6 +8,7 @@
 #include <unordered_set>
 
 #include "base/error.h"
+#include "stats/matrix/runs.h"
 
 namespace synpo {
 namespace {
@@ -18,7 +19,8 @@ std::string start_key(const MatrixRow& row) {
   return concat(standing_key(row), '\t', row.eval_seed, '\t', row.first_episode, '\t', row.episodes);
 }
 
-// What a side has: pairs, pairs with their standing, rows by their start states, and environments by their hash.
+// One side of a comparison: its pairs, pairs with their standing, rows by their start states, and environments by their
+// hash.
 struct Side {
   explicit Side(const Matrix& matrix) {
     for (const MatrixRow& row : matrix.rows) {

@@ -6,9 +6,9 @@
 
 #include "base/error.h"
 #include "base/files/io.h"
+#include "format/matrix.h"
 #include "stats/interval.h"
 #include "stats/matrix/merge.h"
-#include "stats/matrix/runs.h"
 
 namespace synpo {
 

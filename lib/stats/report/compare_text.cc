@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "format/tsv.h"
 #include "stats/chance.h"
+#include "stats/interval.h"
 #include "stats/report/compare.h"
 #include "stats/report/text_table.h"
 

@@ -6,6 +6,8 @@
 
 #include "base/error.h"
 #include "format/tsv.h"
+#include "stats/interval.h"
+#include "stats/matrix/runs.h"
 #include "stats/report/text_table.h"
 
 namespace synpo {

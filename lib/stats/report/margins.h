@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/files/io.h"
-#include "stats/interval.h"
+#include "format/matrix.h"
 #include "stats/matrix/runs.h"
 
 namespace synpo {

@@ -7,6 +7,7 @@
 #include "base/files/io.h"
 #include "format/matrix.h"
 #include "stats/bootstrap.h"
+#include "stats/interval.h"
 #include "stats/matrix/runs.h"
 #include "stats/report/text_table.h"
 
@@ -17,7 +18,7 @@ struct TableCell {
   int64_t episodes = 0;
   MeanSd over_runs;     // of the runs' means over their pairs, every pair alike
   double iqm;           // interquartile mean of all values, one per run and pair
-  Interval interval;    // 95 %, for the mean; NaN where there is none
+  Interval interval;    // 95 %, for the mean; NaN where the mean has no interval
   bool wilson = false;  // the interval is Wilson's, over episodes alone: the runs tell nothing that would widen it
 };
 

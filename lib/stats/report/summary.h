@@ -1,4 +1,4 @@
-// What a success matrix says over its seen and unseen pairs.
+// The summary of a success matrix over its seen and unseen pairs.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -33,7 +33,7 @@ std::string escaped(const std::string& cell, TableFormat format) {
   return out;
 }
 
-constexpr int kMoreDigits = 6;  // behind the point, at most, where a measure's own say too little
+constexpr int kMoreDigits = 6;  // after the point, at most, where a measure's own say too little
 
 // An end of an interval. That of a rate is 100 or 0 only where all or none succeeded, which the mean tells.
 std::string end_text(double end, double mean, const MeasureKind& kind, int digits) {

@@ -14,13 +14,13 @@ enum class TableFormat { kText, kMarkdown, kLatex };
 std::string decimal(double value, int digits);
 // A rate in per cent. 100.0 and 0.0 stand there only where all or none succeeded: 0.9999 is 99.9.
 std::string percent(double rate, int digits = 1);
-// Digits behind the point at which the ends of the interval can be told apart: the measure's own, or more. 100.0 and
+// Digits after the point at which the ends of the interval can be told apart: the measure's own, or more. 100.0 and
 // 0.0 stand there only where `mean` is all or none.
 int range_digits(const Interval& interval, double mean, const MeasureKind& kind);
 // "81.2 to 86.0", with that many digits. "-" where there is no interval.
 std::string range_text(const Interval& interval, double mean, const MeasureKind& kind);
 
-// "85.0 +- 1.2", of one value "85.0", with at least `digits` of them behind the point. Never "100.0 +- 0.0": runs that
+// "85.0 +- 1.2", of one value "85.0", with at least `digits` of them after the point. Never "100.0 +- 0.0": runs that
 // are all alike are "100.0 (3 alike)", and where a value would be rounded to a spread of 0 or to a mean of 100 that it
 // isn't, more digits are shown.
 std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind, int digits = 0);

@@ -92,7 +92,7 @@ nothing_left() {
     kill -9 "$pid"
     ends 137
     [ -f "$left" ]
-    : >out.part >out.abcd.part >out.abcdefghijkl.partly >out.ABCDEFGHIJKL.part >xout.abcdefghijkl.part
+    touch out.part out.abcd.part out.abcdefghijkl.partly out.ABCDEFGHIJKL.part xout.abcdefghijkl.part
     mkdir "${left%????????.part}22222222.part"
     cp "$left" "../${left##*/}"
     ln -s "../${left##*/}" "${left%????????.part}33333333.part"

@@ -56,7 +56,7 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
     echo mine | cmp - full/file
 }
 
-@test "--frames, --video: stopped half way, nothing is left behind" {
+@test "--frames, --video: stopped half way, nothing is left" {
     for signal in INT TERM; do
         for films in "--frames frames" "--video a.avi"; do
             # shellcheck disable=SC2086
@@ -66,7 +66,7 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
             status=0
             wait $! || status=$?
             [ "$status" = $((128 + $(kill -l $signal))) ]
-            ! ls | grep 'part\|frames\|avi' || complain "left behind"
+            ! ls | grep 'part\|frames\|avi' || complain "files are left"
         done
     done
 }

@@ -1,4 +1,4 @@
-# What the tests of pictures share.
+# Shared by the tests of pictures.
 
 is_png() {
     head -c 8 "$1" >magic

@@ -4,12 +4,14 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/half.h"
 #include "base/hash.h"
 #include "base/random.h"
 #include "format/checkpoint.h"
 #include "format/matrix.h"
 #include "format/pairs.h"
 #include "format/run_log.h"
+#include "format/safetensors.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
 

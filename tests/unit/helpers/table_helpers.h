@@ -15,7 +15,7 @@ namespace synpo {
 
 inline std::string temporary_path() { return testing::TempDir() + "synpo_table_" + std::to_string(getpid()) + ".tsv"; }
 
-// What `read` makes of a file that holds `text`.
+// The result of `read` for a file that holds `text`.
 template <class Read>
 auto read_text(const std::string& text, Read read) {
   const std::string path = temporary_path();
@@ -28,7 +28,7 @@ auto read_text(const std::string& text, Read read) {
   return read(input);
 }
 
-// What `write` writes.
+// The text that `write` writes.
 inline std::string written(const std::function<void(Output&)>& write) {
   const std::string path = temporary_path();
   Output output(path);

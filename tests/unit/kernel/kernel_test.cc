@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// A matrix [rows, columns] with `gap` unused values behind each row, which are NaN.
+// A matrix [rows, columns] with `gap` unused values after each row, which are NaN.
 template <class T>
 struct Strided {
   Strided(int row_count, int column_count, int gap, uint64_t seed)
@@ -64,7 +64,7 @@ void check_gemm(const NamedKernels<T>& target, Op op_a, Op op_b, int m, int n, i
           << i << ", " << j;
     }
     for (int j = n; j < c.stride; ++j)
-      ASSERT_TRUE(std::isnan(double(c.values[size_t(i) * c.stride + j]))) << "written behind row " << i;
+      ASSERT_TRUE(std::isnan(double(c.values[size_t(i) * c.stride + j]))) << "written after row " << i;
   }
 }
 

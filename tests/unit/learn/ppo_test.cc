@@ -16,7 +16,7 @@ namespace {
 constexpr StepEnd kOn = StepEnd::kGoesOn, kEnd = StepEnd::kTerminated, kCut = StepEnd::kTruncated;
 
 TEST(Gae, IsTheHandComputedOneWithinAnEpisode) {
-  // gamma 0.5, lambda 0.5, one lane, three steps, V behind the last 8.
+  // gamma 0.5, lambda 0.5, one lane, three steps, V after the last 8.
   const float reward[] = {1, 2, 3}, value[] = {4, 2, 6}, cut[] = {0, 0, 0}, last[] = {8};
   const StepEnd end[] = {kOn, kOn, kOn};
   // delta_2 = 3 + 4 - 6 = 1; delta_1 = 2 + 3 - 2 = 3; delta_0 = 1 + 1 - 4 = -2.

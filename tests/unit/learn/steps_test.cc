@@ -191,7 +191,7 @@ TEST(TrajectoryDraw, IsTheSameForTheSameUpdate) {
   EXPECT_FALSE(equal(a, b));
 }
 
-// What of every running episode is known: the walks that it may be on. Each draw has to be the next step of one of
+// All that is known of every running episode: the walks that it may be on. Each draw has to be the next step of one of
 // them.
 class Followers {
  public:

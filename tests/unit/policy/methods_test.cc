@@ -1,5 +1,5 @@
-// What every method has to keep: gradients, threads, batches behind one another, inference; and what only one of them
-// does.
+// All that every method has to keep: gradients, threads, batches one after another, inference; and what only one of
+// them does.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const au
 constexpr double kDropout = 0.3;
 
 // SF's temporal difference holds its targets fixed, so that its gradient is none of its loss; but where they are
-// constant it is: with phi constant, and nothing behind. phi's own gradient has a test below.
+// constant it is: with phi constant, and no step after it. phi's own gradient has a test below.
 TEST_P(Methods, GradientsAreFiniteDifferences) {
   Network<double> net = network<double>();
   net.shake();
@@ -133,7 +133,7 @@ TEST_P(Methods, OneAndTwoThreadsGiveTheSameBits) {
 }
 
 TEST_P(Methods, ABatchBehindAnotherIsAsIfItWereAlone) {
-  // Memory that an earlier, larger step left behind must not show.
+  // Memory that an earlier, larger step left must not show.
   const RandomSteps<float> large(70, GetParam().shape(), 4), small(9, GetParam().shape(), 5);
   Parallel parallel(2);
   Network<float> fresh = network<float>(), used = network<float>();
@@ -141,9 +141,9 @@ TEST_P(Methods, ABatchBehindAnotherIsAsIfItWereAlone) {
   used.step(parallel, large.batch(), {{0.01, 0.1, 1}, kDropout});
   used.statistics = statistics;
   used.infer(parallel, large.batch(), 32);
-  const Losses behind = used.step(parallel, small.batch(), {{0.01, 0.1, 1}, kDropout});
+  const Losses after = used.step(parallel, small.batch(), {{0.01, 0.1, 1}, kDropout});
   const Losses alone = fresh.step(parallel, small.batch(), {{0.01, 0.1, 1}, kDropout});
-  EXPECT_EQ(behind.total, alone.total);
+  EXPECT_EQ(after.total, alone.total);
   EXPECT_EQ(used.logits, fresh.logits);
   EXPECT_EQ(used.gradient, fresh.gradient);
   EXPECT_EQ(used.statistics, fresh.statistics);
@@ -336,9 +336,9 @@ TEST(SfTemporalDifference, IsTheLossByHand) {
     if (steps.next[i] == StepBatch<double>::kUnknown) continue;
     ++counted;
     for (size_t c = 0; c < width; ++c) {
-      const double behind =
+      const double next_psi =
           steps.next[i] == StepBatch<double>::kTerminal ? 0 : psi[steps.label[steps.next[i]] * width + c];
-      sum += std::pow(psi[steps.taken[i] * width + c] - phi[steps.taken[i] * width + c] - 0.9 * behind, 2);
+      sum += std::pow(psi[steps.taken[i] * width + c] - phi[steps.taken[i] * width + c] - 0.9 * next_psi, 2);
     }
   }
   ASSERT_EQ(kinds.size(), 3u);

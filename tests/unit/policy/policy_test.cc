@@ -39,7 +39,7 @@ TEST(SynPo, StatisticsOfTheInputAreThePixels) {
 
 TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
   // With nothing but centre taps in the first layer, mean and deviation of a pixel can be put into its weights and the
-  // shifts behind them.
+  // shifts after them.
   PolicyShape shape = tiny_shape(false);
   Network<double> plain(shape);
   shape.normalise_input = true;
