@@ -7,9 +7,7 @@ setup_file() {
 }
 
 setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv,save,whole.ckpt} .
+    set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv save whole.ckpt
     cp "$BATS_FILE_TMPDIR/log.tsv" .
 }
 

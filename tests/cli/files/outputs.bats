@@ -1,12 +1,7 @@
 load ../common
 
 setup_file() { make_inputs; }
-
-setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
-}
+setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
 
 teardown() {
     [ -z "${pid-}" ] || kill -9 "$pid" 2>/dev/null || true

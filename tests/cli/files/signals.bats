@@ -6,9 +6,7 @@ setup_file() {
 }
 
 setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,full.ckpt,m.tsv} .
+    set_up pairs.tsv two.tsv e.jsonl a.ckpt full.ckpt m.tsv
     mkfifo stream
 }
 

@@ -1,11 +1,8 @@
 load ../common
 
 setup_file() { make_inputs; }
-
 setup() {
-    mkdir "$BATS_TEST_TMPDIR/work"
-    cd "$BATS_TEST_TMPDIR/work" || exit
-    ln -s "$BATS_FILE_TMPDIR"/{pairs.tsv,two.tsv,e.jsonl,a.ckpt,m.tsv} .
+    set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv
     mkfifo stream
 }
 
