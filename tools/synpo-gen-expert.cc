@@ -28,8 +28,8 @@ void relabel(const World& world, Output& output) {
 
 int gen_expert(int argc, char** argv) {
   std::string world_name = "gridworld", pairs_path, output_path = "-";
-  int64_t count = 0, per_pair = 0, seed = 1, window = 1;
-  double noise = 0;
+  ExpertStream stream;
+  int64_t count = 0;
   bool relabel_stream = false, quiet = false;
   Options options(
       "synpo-gen-expert",
@@ -39,21 +39,21 @@ int gen_expert(int argc, char** argv) {
       .text('p', "pairs", "FILE", "pairs to draw from: TSV env, task, seen; rows with seen = 1 (all pairs)", pairs_path)
       .integer('n', "count", "N", "trajectories, each of a random pair; 0: until the reader goes away", count, 0,
                INT64_MAX)
-      .integer(0, "per-pair", "N", "instead of -n: N trajectories of every pair, in order; 0: no", per_pair, 0,
+      .integer(0, "per-pair", "N", "instead of -n: N trajectories of every pair, in order; 0: no", stream.per_pair, 0,
                INT64_MAX / 100000)
-      .integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
-      .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's", noise,
-            0, 1)
+      .seed(stream.seed)
+      .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's",
+            stream.noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
-      .integer(0, "window", "R", "window radius noted in the records (0: blind)", window, 0, 16)
+      .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
       .text('w', "world", "WORLD", alternatives(world_names()).c_str(), world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
-      .flag('q', "quiet", "no progress", quiet);
+      .quiet(quiet);
   options.parse(argc, argv);
   if (relabel_stream)
     for (const char* other : {"pairs", "count", "per-pair", "noise", "seed", "window"})
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
-  if (per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
+  if (stream.per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
 
   catch_stop_signals();
   const std::unique_ptr<World> opened = open_world(world_name);
@@ -64,23 +64,12 @@ int gen_expert(int argc, char** argv) {
     output.finish();
     return 0;
   }
-  std::vector<EnvTask> pairs;
-  if (pairs_path.empty()) {
-    for (int env = 0; env < world.envs(); ++env)
-      for (int task = 0; task < world.task_count(); ++task) pairs.push_back({env, task});
-  } else {
-    Input input(pairs_path);
-    pairs = resolve_pairs(world, read_pairs(input), true, input.name());
-  }
-  if (pairs.empty()) fail(Exit::kData, "no pair with seen = 1 in '", pairs_path, "'");
-
-  const int64_t total = per_pair > 0 ? per_pair * int64_t(pairs.size()) : count;
+  stream.pairs =
+      pairs_path.empty() ? resolve_pairs(world, all_pairs(world), false, "") : read_seen_pairs(world, pairs_path);
+  const int64_t total = stream.per_pair > 0 ? stream.per_pair * int64_t(stream.pairs.size()) : count;
   Progress progress("synpo-gen-expert", "trajectories", total, quiet || output.is_stdout());
   for (int64_t i = 0; total == 0 || i < total; ++i) {
-    const size_t pick = per_pair > 0 ? size_t(i / per_pair)
-                                     : Random(seed, Purpose::kPairOrder, 0, uint64_t(i)).below(uint32_t(pairs.size()));
-    const int64_t episode = per_pair > 0 ? i % per_pair : i;
-    output.write(format_trajectory(expert_episode(world, pairs[pick], seed, episode, noise, int(window))) + "\n");
+    output.write(format_trajectory(stream.trajectory(world, i)) + "\n");
     progress.update(uint64_t(i + 1));
     stop_if_asked();
   }

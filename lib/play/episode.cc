@@ -118,4 +118,29 @@ std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow
   return pairs;
 }
 
+std::vector<PairRow> all_pairs(const World& world) {
+  std::vector<PairRow> rows;
+  for (const Environment& env : world.environments())
+    for (const std::string& task : world.task_names()) rows.push_back({env.name, task, false, ""});
+  return rows;
+}
+
+std::vector<PairRow> read_pairs(const std::string& path) {
+  Input input(path);
+  return read_pairs(input);
+}
+
+std::vector<EnvTask> read_seen_pairs(const World& world, const std::string& path) {
+  std::vector<EnvTask> pairs = resolve_pairs(world, read_pairs(path), true);
+  if (pairs.empty()) fail(Exit::kData, "no pair with seen = 1 in '", path, "'");
+  return pairs;
+}
+
+Trajectory ExpertStream::trajectory(const World& world, int64_t number) const {
+  if (per_pair > 0)
+    return expert_episode(world, pairs[size_t(number / per_pair)], seed, number % per_pair, noise, window);
+  Random random(seed, Purpose::kPairOrder, 0, uint64_t(number));
+  return expert_episode(world, pairs[random.below(uint32_t(pairs.size()))], seed, number, noise, window);
+}
+
 }  // namespace synpo

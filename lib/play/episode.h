@@ -51,4 +51,22 @@ Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64
 std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only,
                                    const std::string& file);
 
+// All pairs of a world, environment by environment, as a file without a column seen = 1 would list them.
+std::vector<PairRow> all_pairs(const World& world);
+// The rows of a pairs file.
+std::vector<PairRow> read_pairs(const std::string& path);
+// Those of its pairs that have seen = 1. Throws kData where there is none.
+std::vector<EnvTask> read_seen_pairs(const World& world, const std::string& path);
+
+// The expert's stream: episodes of pairs drawn at random, or, where `per_pair` > 0, so many of every pair in order.
+struct ExpertStream {
+  std::vector<EnvTask> pairs;
+  uint64_t seed = 1;
+  int64_t per_pair = 0;
+  double noise = 0;
+  int window = 1;
+  // Number `number` of them, from 0.
+  Trajectory trajectory(const World& world, int64_t number) const;
+};
+
 }  // namespace synpo

@@ -7,6 +7,7 @@
 #include <mutex>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "nn/loss.h"
 #include "nn/softmax.h"
 #include "play/episode_batch.h"
@@ -105,6 +106,50 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
     }
   });
   return results;
+}
+
+Matrix success_matrix(Parallel& parallel, const World& world, Model& model, const std::string& run,
+                      const MatrixPlan& plan, const EpisodeSink& sink, const std::function<void(size_t)>& progress) {
+  const std::vector<EnvTask> pairs = resolve_pairs(world, plan.pairs, false);
+  std::vector<std::pair<int, int>> numbers;
+  std::vector<EvalEpisode> episodes;
+  for (size_t p = 0; p < pairs.size(); ++p) {
+    numbers.emplace_back(pairs[p].env, pairs[p].task);
+    for (int64_t e = 0; e < plan.count; ++e) episodes.push_back({int(p), plan.first + e});
+  }
+  model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
+  const std::vector<Outcomes> results = evaluate(parallel, *model.policy, world, pairs, episodes,
+                                                 {plan.seed, model.window, plan.temperature}, sink, progress);
+  Matrix matrix;
+  for (size_t p = 0; p < pairs.size(); ++p) {
+    const PairRow& pair = plan.pairs[p];
+    const Outcomes& r = results[p];
+    matrix.has_part |= !pair.part.empty();
+    MatrixRow row;
+    row.run = run;
+    row.world = world.name();
+    row.window = model.window;
+    row.method = model.method;
+    row.seed = model.seed;
+    row.updates = model.updates;
+    row.eval_seed = plan.seed;
+    row.first_episode = plan.first;
+    row.env = pair.env;
+    row.task = pair.task;
+    row.seen = model.is_seen(pairs[p]);
+    row.is_new = !model.knows(pairs[p]);
+    row.episodes = r.episodes;
+    row.successes = r.successes;
+    row.wrong = r.wrong;
+    row.timeouts = r.timeouts;
+    row.reward = double(r.reward_cents) / 100;
+    row.length = r.length;
+    row.part = pair.part;
+    row.temperature = plan.temperature;
+    row.env_hash = hex(world.environments()[size_t(pairs[p].env)].hash);
+    matrix.rows.push_back(std::move(row));
+  }
+  return matrix;
 }
 
 RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model,

@@ -1,9 +1,12 @@
 // Success of a policy on pairs, every episode run to its own end.
 #pragma once
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "format/matrix.h"
+#include "format/pairs.h"
 #include "format/run_log.h"
 #include "format/trajectory.h"
 #include "play/model.h"
@@ -32,6 +35,19 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
                                const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
                                const EvalOptions& options, const EpisodeSink& sink = nullptr,
                                const std::function<void(size_t done)>& progress = nullptr);
+
+// Episodes first .. first + count - 1 of every pair.
+struct MatrixPlan {
+  std::vector<PairRow> pairs;
+  int64_t count = 100, first = 0;
+  uint64_t seed = 1;
+  double temperature = 0;
+};
+
+// The success matrix of a policy, a row for each pair in their order; `run` names its weights.
+Matrix success_matrix(Parallel& parallel, const World& world, Model& model, const std::string& run,
+                      const MatrixPlan& plan, const EpisodeSink& sink = nullptr,
+                      const std::function<void(size_t done)>& progress = nullptr);
 
 // Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at
 // random, an episode each; the same ones at every call while no pair is seen that was not. Unseen are pairs of an

@@ -107,8 +107,8 @@ Options& Options::toggle(const char* name, const char* help, bool& value) {
 }
 
 template <class Integer>
-Options& Options::add_integer(char letter, const char* name, const char* arg, const char* help, Integer& value,
-                              Integer low, Integer high) {
+Options& Options::integer(char letter, const char* name, const char* arg, const char* help, Integer& value, int64_t low,
+                          int64_t high) {
   return call(letter, name, arg, help,
               [&value, low, high](const std::string& text) {
                 const std::string expected = concat("expected a whole number from ", low, " to ", high);
@@ -123,16 +123,17 @@ Options& Options::add_integer(char letter, const char* name, const char* arg, co
               })
       .shown_as(std::to_string(value));
 }
+template Options& Options::integer(char, const char*, const char*, const char*, int&, int64_t, int64_t);
+template Options& Options::integer(char, const char*, const char*, const char*, int64_t&, int64_t, int64_t);
+template Options& Options::integer(char, const char*, const char*, const char*, uint64_t&, int64_t, int64_t);
 
-Options& Options::integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low,
-                          int64_t high) {
-  return add_integer(letter, name, arg, help, value, low, high);
+Options& Options::seed(uint64_t& value, const char* help, const char* arg) {
+  return integer('s', "seed", arg, help, value, 0, INT64_MAX);
 }
 
-Options& Options::integer(char letter, const char* name, const char* arg, const char* help, int& value, int low,
-                          int high) {
-  return add_integer(letter, name, arg, help, value, low, high);
-}
+Options& Options::threads(int& value, const char* help) { return integer('j', "threads", "N", help, value, 0, 1024); }
+
+Options& Options::quiet(bool& value, const char* help) { return flag('q', "quiet", help, value); }
 
 Options& Options::real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
                        double high) {

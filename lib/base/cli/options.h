@@ -26,9 +26,10 @@ class Options {
   // --NAME and --no-NAME. The older spelling --NAME 1 and --NAME 0 is read as well.
   Options& toggle(const char* name, const char* help, bool& value);
   Options& toggle(const char* name, const char* help, std::function<void(bool)> set);
-  Options& integer(char letter, const char* name, const char* arg, const char* help, int64_t& value, int64_t low,
+  // Of int, int64_t or uint64_t; up to INT64_MAX.
+  template <class Integer>
+  Options& integer(char letter, const char* name, const char* arg, const char* help, Integer& value, int64_t low,
                    int64_t high);
-  Options& integer(char letter, const char* name, const char* arg, const char* help, int& value, int low, int high);
   Options& real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
                 double high);
   Options& text(char letter, const char* name, const char* arg, const char* help, std::string& value);
@@ -38,6 +39,10 @@ class Options {
   // Calls `set` with the argument; std::invalid_argument thrown by it is a usage error that names the option.
   Options& call(char letter, const char* name, const char* arg, const char* help,
                 std::function<void(const std::string&)> set);
+  // Those that mean the same everywhere: -s, -j and -q.
+  Options& seed(uint64_t& value, const char* help = "seed", const char* arg = "N");
+  Options& threads(int& value, const char* help = "threads; 0: as many as there are; results don't depend on it");
+  Options& quiet(bool& value, const char* help = "no progress");
   // What --help shows as the default of the option added last, in place of the value's own.
   Options& shown_as(const std::string& default_text);
   // A heading in --help above the options that follow.
@@ -69,9 +74,6 @@ class Options {
   };
   Options& add(Kind kind, char letter, const std::string& name, const char* arg, const char* help,
                std::function<void(const std::string&)> set);
-  template <class Integer>
-  Options& add_integer(char letter, const char* name, const char* arg, const char* help, Integer& value, Integer low,
-                       Integer high);
   std::string usage() const;
   [[noreturn]] void wrong(const std::string& message) const;
   Found find(const std::string& name);
