@@ -63,6 +63,7 @@ int body(int argc, char** argv) {
   const std::unique_ptr<World> world = world_of(checkpoint, world_name);
   Model model = load_model(checkpoint, *world);
   if (!options.given("temperature")) plan.temperature = model.policy->temperature();
+  plan.pairs_file = pairs_path;
   plan.pairs = pairs_path.empty() ? all_pairs(*world) : read_pairs(pairs_path);
 
   const bool records_to_stdout = record_path == "-";

@@ -3,26 +3,28 @@
 
 #include "advice.h"
 #include "base/cli/options.h"
+#include "learn/ppo/tuning.h"
 
 using namespace synpo;
 
 namespace {
 
 int body(int argc, char** argv) {
-  return run_commands("synpo-finetune", "Takes a trained policy further.",
-                      {{"adapt",
-                        "embeddings of new environments and tasks from a few demonstrations",
-                        adapt,
-                        {kSeeWorld,
-                         kNameFolder,
-                         kNameOtherFolder,
-                         kSmallerRate,
-                         {kNeedsMore, "{} (sf: synpo-train --sf-loss ce makes policies that can be adapted)"}}},
-                       {"ppo",
-                        "reinforcement learning on the seen pairs",
-                        ppo,
-                        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate}}},
-                      argc, argv);
+  return run_commands(
+      "synpo-finetune", "Takes a trained policy further.",
+      {{"adapt",
+        "embeddings of new environments and tasks from a few demonstrations",
+        adapt,
+        {kSeeWorld,
+         kNameFolder,
+         kNameOtherFolder,
+         kSmallerRate,
+         {kNeedsMore, "{} (sf: synpo-train --sf-loss ce makes policies that can be adapted)"}}},
+       {"ppo",
+        "reinforcement learning on the seen pairs",
+        ppo,
+        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate, {kNoPairs, "{}: give them with -p"}}}},
+      argc, argv);
 }
 
 }  // namespace

@@ -46,7 +46,7 @@ int gen_expert(int argc, char** argv) {
             stream.noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
-      .text('w', "world", "WORLD", alternatives(world_names()).c_str(), world_name)
+      .text('w', "world", "WORLD", alternatives(world_names()), world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .quiet(quiet);
   options.parse(argc, argv);

@@ -1,7 +1,9 @@
 #include "learn/long_run.h"
 
+#include "base/clock.h"
 #include "base/error.h"
 #include "base/files/destination.h"
+#include "base/signals.h"
 
 namespace synpo {
 namespace {
@@ -9,8 +11,8 @@ namespace {
 using Paths = std::vector<std::string>;
 
 // What the checkpoint to go on from may be one file with: the one that it follows, and the last one if that holds all.
-Paths as_good(const LongRun& settings, const std::string& resumed) {
-  Paths paths = {resumed};
+Paths as_good(const LongRun& settings) {
+  Paths paths = {settings.resume};
   if (!settings.strip && settings.output != "-") paths.push_back(settings.output);
   return paths;
 }
@@ -26,8 +28,8 @@ void check_save(const std::string& path, const Paths& over) {
 }  // namespace
 
 void LongRun::add_to(Options& options) {
-  options.integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
-      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)
+  options.seed(seed)
+      .threads(threads)
       .text('o', "output", "FILE", "write the checkpoint to FILE", output)
       .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and when a signal stops the run", save)
       .integer(0, "every", "N", "updates between two of them", every, 1, INT64_MAX)
@@ -39,13 +41,49 @@ void LongRun::add_to(Options& options) {
                evaluate_episodes, 1, 1000000)
       .flag(0, "strip", "leave out of the checkpoint what only training needs", strip)
       .flag('f', "force", "write the checkpoint to a terminal", force)
-      .flag('q', "quiet", "no progress", quiet);
+      .quiet(quiet);
 }
 
-RunOutputs::RunOutputs(const LongRun& settings, const std::string& resumed, const std::vector<std::string>& columns)
-    : save_(settings.save), over_(as_good(settings, resumed)),
-      output_(settings.output, Output::Kind::kBinary, settings.force, settings.strip ? Paths{} : Paths{resumed}),
-      log_(settings.log, !resumed.empty(), columns) {
+int LongRun::drive(const char* tool, LongWork& work) const {
+  // Made before the training, so that hours of it don't end in "cannot create".
+  RunOutputs outputs(*this, work.columns());
+  if (!work.finished()) work.begin();
+  {
+    Progress progress(tool, work.unit(), work.total(), quiet, work.done());
+    const TimePoint start = now();
+    TimePoint reported = start;
+    std::string note;
+    while (!work.finished() && stop_signal() == 0) {
+      try {
+        work.update(progress);
+      } catch (const Stopped&) {
+        break;
+      }
+      progress.set_total(work.total());
+      const int64_t update = work.updates();
+      const bool last = work.finished();
+      if (reports(update, last)) {
+        const TimePoint moment = now();
+        note = work.report({outputs.log(), progress, seconds_between(start, moment), seconds_between(reported, moment),
+                            evaluates(update, last) ? evaluate_episodes : 0});
+        reported = now();
+      }
+      if (saves(update, last)) outputs.save(work.checkpoint(true));
+      progress.update(work.done(), note);
+    }
+  }
+  const int signal = stop_signal();
+  if (!work.has_learned()) stop_if_asked();
+  if (!save.empty()) outputs.save(work.checkpoint(true));
+  if (signal == 0) work.end();
+  outputs.finish(work.checkpoint(!strip));
+  return signal && !work.finished() ? 128 + signal : 0;
+}
+
+RunOutputs::RunOutputs(const LongRun& settings, const std::vector<std::string>& columns)
+    : save_(settings.save), over_(as_good(settings)), output_(settings.output, Output::Kind::kBinary, settings.force,
+                                                              settings.strip ? Paths{} : Paths{settings.resume}),
+      log_(settings.log, !settings.resume.empty(), columns) {
   check_save(save_, over_);
 }
 

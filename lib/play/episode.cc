@@ -131,7 +131,7 @@ std::vector<PairRow> read_pairs(const std::string& path) {
 }
 
 std::vector<EnvTask> read_seen_pairs(const World& world, const std::string& path) {
-  std::vector<EnvTask> pairs = resolve_pairs(world, read_pairs(path), true);
+  std::vector<EnvTask> pairs = resolve_pairs(world, read_pairs(path), true, path);
   if (pairs.empty()) fail(Exit::kData, "no pair with seen = 1 in '", path, "'");
   return pairs;
 }

@@ -110,7 +110,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
 
 Matrix success_matrix(Parallel& parallel, const World& world, Model& model, const std::string& run,
                       const MatrixPlan& plan, const EpisodeSink& sink, const std::function<void(size_t)>& progress) {
-  const std::vector<EnvTask> pairs = resolve_pairs(world, plan.pairs, false);
+  const std::vector<EnvTask> pairs = resolve_pairs(world, plan.pairs, false, plan.pairs_file);
   std::vector<std::pair<int, int>> numbers;
   std::vector<EvalEpisode> episodes;
   for (size_t p = 0; p < pairs.size(); ++p) {

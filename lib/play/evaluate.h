@@ -38,6 +38,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
 
 // Episodes first .. first + count - 1 of every pair.
 struct MatrixPlan {
+  std::string pairs_file;  // that names the pairs, for messages
   std::vector<PairRow> pairs;
   int64_t count = 100, first = 0;
   uint64_t seed = 1;

@@ -22,7 +22,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/random.h"
-#include "learn/ppo.h"
+#include "learn/ppo/ppo.h"
 #include "learn/recipe.h"
 #include "learn/steps.h"
 #include "nn/adam.h"

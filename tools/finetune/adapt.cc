@@ -1,5 +1,5 @@
 // Demonstrations on stdin, an adapted checkpoint on stdout.
-#include <cstdio>
+#include <stdexcept>
 
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
@@ -54,15 +54,18 @@ AdaptTargets parse_targets(const std::string& list) {
 int adapt(int argc, char** argv) {
   AdaptOptions adaptation;
   std::string checkpoint_path, world_name, output_path = "-";
-  int64_t updates = 10000, seed = 1, threads = 0, trajectories = adaptation.trajectories;
+  uint64_t seed = 1;
+  int64_t updates = 10000;
+  int threads = 0;
   bool force = false, quiet = false;
   Options options(
       "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
       "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
-      .text('w', "world", "WORLD", concat("new environments too: ", alternatives(world_names())).c_str(), world_name)
+      .text('w', "world", "WORLD", concat("new environments too: ", alternatives(world_names())), world_name)
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
-      .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", trajectories, 1, 100000)
+      .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", adaptation.trajectories, 1,
+               100000)
       .call(0, "train", "WHAT", "embeddings, and after it +heads, +coefficients, or both [embeddings]",
             [&](const std::string& list) { adaptation.targets = parse_targets(list); })
       .real(0, "lr", "X", "learning rate of Adam", adaptation.adam.learning_rate, 0, 1)
@@ -72,34 +75,30 @@ int adapt(int argc, char** argv) {
       .real(0, "task-loss", "X", "weight of task disentanglement", adaptation.losses.task, 0, 1e6)
       .real(0, "embedding-sd", "X", "new embeddings start as N(0, X^2); 0: Xavier uniform", adaptation.embedding_sd, 0,
             1000)
-      .integer('s', "seed", "N", "seed", seed, 0, INT64_MAX)
-      .integer('j', "threads", "N", "threads; 0: as many as there are; results don't depend on it", threads, 0, 1024)
+      .seed(seed)
+      .threads(threads)
       .text('o', "output", "FILE", "write the checkpoint to FILE", output_path)
       .flag('f', "force", "write the checkpoint to a terminal", force)
-      .flag('q', "quiet", "no progress", quiet);
+      .quiet(quiet);
   options.parse(argc, argv);
   if (checkpoint_path.empty()) fail(Exit::kUsage, "-c CHECKPOINT is missing");
-  adaptation.trajectories = int(trajectories);
 
   catch_stop_signals();
-  Parallel parallel{int(threads)};
+  Parallel parallel(threads);
   const Checkpoint checkpoint = load_checkpoint(checkpoint_path);
   const std::unique_ptr<World> more = world_name.empty() ? nullptr : open_world(world_name);
   const std::unique_ptr<World> from = world_of(checkpoint, more.get());
   const Model model = load_model(checkpoint, *from);
-  const std::unique_ptr<World> wider = wider_world(*from, more.get(), world_name);
-  const World& world = *wider;
-  Adaptation adapted(world, parallel, widen(model, *from, world, adaptation.embedding_sd, uint64_t(seed)), adaptation,
-                     uint64_t(seed));
+  const std::unique_ptr<World> world = wider_world(*from, more.get(), world_name);
+  Adaptation adapted(*world, parallel, widen(model, *from, *world, adaptation.embedding_sd, seed), adaptation, seed);
   Output output(output_path, Output::Kind::kBinary, force);
   Input input("-");
-  TrajectoryStream stream(input, world, {}, model.window);
+  TrajectoryStream stream(input, *world, {}, model.window);
   while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
   if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
-  if (!quiet)
-    std::fprintf(stderr, "synpo-finetune: %zu demonstrations, %d new environments, %d new tasks\n",
-                 adapted.demonstrations(), adapted.new_envs(), adapted.new_tasks());
   Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
+  progress.say(concat(adapted.demonstrations(), " demonstrations, ", adapted.new_envs(), " new environments, ",
+                      adapted.new_tasks(), " new tasks"));
   for (int64_t i = 0; i < updates; ++i) {
     const Losses losses = adapted.update();
     progress.update(uint64_t(i + 1), "loss " + std::to_string(losses.total).substr(0, 5));

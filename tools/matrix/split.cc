@@ -27,8 +27,8 @@ std::vector<std::string> any_names(const std::string& option, const std::string&
 
 int matrix_split(int argc, char** argv) {
   SplitPlan plan;
-  std::string world = "gridworld", envs, tasks, parts, output_path = "-";
-  int64_t seed = 1;
+  std::string world = "gridworld", envs, tasks, output_path = "-";
+  std::vector<std::string> parts;
   const auto add_single = [&](const std::string& text) {
     const std::vector<std::string> names = split_names(text);
     if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
@@ -36,6 +36,7 @@ int matrix_split(int argc, char** argv) {
   };
   std::string worlds;
   for (const std::string& name : world_names()) worlds += name + ", ";
+  worlds += "or any for names of your own";
   Options options("synpo-matrix split", "[OPTION]... >PAIRS",
                   "Draws which pairs of environments and tasks are seen in training.");
   options.integer('n', "seen", "COUNT", "seen pairs", plan.seen, 0, INT64_MAX)
@@ -48,8 +49,8 @@ int matrix_split(int argc, char** argv) {
       .integer(0, "cover", "COUNT", "at least so many seen per environment and task", plan.cover, 0, INT64_MAX)
       .shown_as("4, or what -n allows")
       .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
-      .integer('s', "seed", "SEED", "seed of the draw", seed, 0, INT64_MAX)
-      .text('w', "world", "WORLD", concat(worlds, "or any for names of your own").c_str(), world)
+      .seed(plan.seed, "seed of the draw", "SEED")
+      .text('w', "world", "WORLD", worlds, world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")
@@ -58,11 +59,18 @@ int matrix_split(int argc, char** argv) {
       .shown_as("half")
       .integer(0, "p-tasks", "COUNT", "the first so many tasks belong to P", plan.p_tasks, 0, INT64_MAX)
       .shown_as("half")
-      .text(0, "part", "LIST", "write only these parts, as in P or P,Q", parts)
+      .call(0, "part", "LIST", "write only these parts, as in P or P,Q",
+            [&](const std::string& list) {
+              parts = split_names(list);
+              for (const std::string& part : parts)
+                if (part != "P" && part != "Q" && part != "rest") throw std::invalid_argument("expected P, Q or rest");
+            })
       .section("Output")
       .text('o', "output", "FILE", "where the pairs go", output_path);
   options.parse(argc, argv);
   if (options.given("seen") && options.given("ratio")) fail(Exit::kUsage, "give either --seen or --ratio");
+  if (!parts.empty() && plan.setting == 1)
+    fail(Exit::kUsage, "--part ", quoted(parts[0]), ": there are no parts without --setting 2 or 3");
   if (world == "any") {
     plan.envs = any_names("--envs", envs, "env");
     plan.tasks = any_names("--tasks", tasks, "task");
@@ -73,16 +81,10 @@ int matrix_split(int argc, char** argv) {
     plan.envs = choose_names("--envs", envs, env_names);
     plan.tasks = choose_names("--tasks", tasks, opened->task_names());
   }
-  plan.seed = uint64_t(seed);
 
-  const std::vector<std::string> wanted = split_names(parts);
-  for (const std::string& part : wanted)
-    if (!parts.empty() && (plan.setting == 1 || (part != "P" && part != "Q" && part != "rest")))
-      fail(Exit::kUsage, "--part ", quoted(part),
-           plan.setting == 1 ? ": there are no parts without --setting 2 or 3" : ": expected P, Q or rest");
   std::vector<PairRow> rows;
   for (const SplitPair& pair : split_pairs(plan))
-    if (parts.empty() || std::find(wanted.begin(), wanted.end(), pair.part) != wanted.end())
+    if (parts.empty() || std::find(parts.begin(), parts.end(), pair.part) != parts.end())
       rows.push_back({pair.env, pair.task, pair.seen, pair.part});
   Output output(output_path);
   write_pairs(output, rows);

@@ -14,7 +14,6 @@ int matrix_table(int argc, char** argv) {
   std::vector<std::string> subsets = {"seen", "unseen"};
   const MeasureKind* measure = &find_measure("success");
   BootstrapPlan plan;
-  int64_t seed = 1;
   bool brief = false, pair_by_pair = false;
   Options options(
       "synpo-matrix table", "[OPTION]... [MATRIX]...",
@@ -32,10 +31,9 @@ int matrix_table(int argc, char** argv) {
       .flag('b', "brief", "mean and sd alone", brief)
       .flag(0, "pair-by-pair", "the interval is a bootstrap's, with runs drawn in each pair on its own", pair_by_pair)
       .integer(0, "samples", "COUNT", "samples of that bootstrap", plan.samples, 100, 1000000)
-      .integer('s', "seed", "SEED", "its seed", seed, 0, INT64_MAX)
+      .seed(plan.seed, "its seed", "SEED")
       .text('o', "output", "FILE", "where the table goes", output_path);
   const Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles));
-  plan.seed = uint64_t(seed);
   const MethodTable table = tabulate(matrix, subsets, *measure, pair_by_pair ? std::optional(plan) : std::nullopt);
   Output output(output_path);
   if (format == "tsv")

@@ -75,7 +75,7 @@ int64_t parse_count(const std::string& text) {
 Options::Options(std::string tool, std::string synopsis, std::string purpose)
     : tool_(std::move(tool)), synopsis_(std::move(synopsis)), purpose_(std::move(purpose)) {}
 
-Options& Options::add(Kind kind, char letter, const std::string& name, const char* arg, const char* help,
+Options& Options::add(Kind kind, char letter, const std::string& name, const char* arg, const std::string& help,
                       std::function<void(const std::string&)> set) {
   entries_.push_back({kind, letter, name, arg, help, "", std::move(set)});
   return *this;
@@ -86,29 +86,29 @@ Options& Options::shown_as(const std::string& default_text) {
   return *this;
 }
 
-Options& Options::call(char letter, const char* name, const char* arg, const char* help,
+Options& Options::call(char letter, const char* name, const char* arg, const std::string& help,
                        std::function<void(const std::string&)> set) {
   return add(Kind::kArgument, letter, name, arg, help, std::move(set));
 }
 
-Options& Options::flag(char letter, const char* name, const char* help, bool& value) {
+Options& Options::flag(char letter, const char* name, const std::string& help, bool& value) {
   return add(Kind::kFlag, letter, name, "", help, [&value](const std::string&) { value = true; });
 }
 
-Options& Options::toggle(const char* name, const char* help, std::function<void(bool)> set) {
+Options& Options::toggle(const char* name, const std::string& help, std::function<void(bool)> set) {
   return add(Kind::kToggle, 0, name, "", help, [set = std::move(set)](const std::string& text) {
     if (text != "0" && text != "1") throw std::invalid_argument("expected 0 or 1");
     set(text == "1");
   });
 }
 
-Options& Options::toggle(const char* name, const char* help, bool& value) {
+Options& Options::toggle(const char* name, const std::string& help, bool& value) {
   return toggle(name, help, [&value](bool on) { value = on; }).shown_as(value ? "on" : "off");
 }
 
 template <class Integer>
-Options& Options::integer(char letter, const char* name, const char* arg, const char* help, Integer& value, int64_t low,
-                          int64_t high) {
+Options& Options::integer(char letter, const char* name, const char* arg, const std::string& help, Integer& value,
+                          int64_t low, int64_t high) {
   return call(letter, name, arg, help,
               [&value, low, high](const std::string& text) {
                 const std::string expected = concat("expected a whole number from ", low, " to ", high);
@@ -123,20 +123,22 @@ Options& Options::integer(char letter, const char* name, const char* arg, const 
               })
       .shown_as(std::to_string(value));
 }
-template Options& Options::integer(char, const char*, const char*, const char*, int&, int64_t, int64_t);
-template Options& Options::integer(char, const char*, const char*, const char*, int64_t&, int64_t, int64_t);
-template Options& Options::integer(char, const char*, const char*, const char*, uint64_t&, int64_t, int64_t);
+template Options& Options::integer(char, const char*, const char*, const std::string&, int&, int64_t, int64_t);
+template Options& Options::integer(char, const char*, const char*, const std::string&, int64_t&, int64_t, int64_t);
+template Options& Options::integer(char, const char*, const char*, const std::string&, uint64_t&, int64_t, int64_t);
 
-Options& Options::seed(uint64_t& value, const char* help, const char* arg) {
+Options& Options::seed(uint64_t& value, const std::string& help, const char* arg) {
   return integer('s', "seed", arg, help, value, 0, INT64_MAX);
 }
 
-Options& Options::threads(int& value, const char* help) { return integer('j', "threads", "N", help, value, 0, 1024); }
+Options& Options::threads(int& value, const std::string& help) {
+  return integer('j', "threads", "N", help, value, 0, 1024);
+}
 
-Options& Options::quiet(bool& value, const char* help) { return flag('q', "quiet", help, value); }
+Options& Options::quiet(bool& value, const std::string& help) { return flag('q', "quiet", help, value); }
 
-Options& Options::real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
-                       double high) {
+Options& Options::real(char letter, const char* name, const char* arg, const std::string& help, double& value,
+                       double low, double high) {
   return call(letter, name, arg, help,
               [&value, low, high](const std::string& text) {
                 if (!parse_whole(text, value) || !(value >= low && value <= high))
@@ -145,7 +147,7 @@ Options& Options::real(char letter, const char* name, const char* arg, const cha
       .shown_as(shortest(value));
 }
 
-Options& Options::choice(char letter, const char* name, const char* arg, const char* help, std::string& value,
+Options& Options::choice(char letter, const char* name, const char* arg, const std::string& help, std::string& value,
                          std::vector<std::string> words) {
   return call(letter, name, arg, help,
               [&value, words = std::move(words)](const std::string& given) {
@@ -156,7 +158,7 @@ Options& Options::choice(char letter, const char* name, const char* arg, const c
       .shown_as(value);
 }
 
-Options& Options::text(char letter, const char* name, const char* arg, const char* help, std::string& value) {
+Options& Options::text(char letter, const char* name, const char* arg, const std::string& help, std::string& value) {
   return call(letter, name, arg, help, [&value](const std::string& given) { value = given; }).shown_as(value);
 }
 

@@ -22,27 +22,28 @@ class Options {
 
   // `letter` may be 0. `help` is one line; the default is read from `value` and shown. An argument outside the range
   // given, or that is no number, or that is empty, is a usage error (64) that says what was found and what is expected.
-  Options& flag(char letter, const char* name, const char* help, bool& value);
+  Options& flag(char letter, const char* name, const std::string& help, bool& value);
   // --NAME and --no-NAME. The older spelling --NAME 1 and --NAME 0 is read as well.
-  Options& toggle(const char* name, const char* help, bool& value);
-  Options& toggle(const char* name, const char* help, std::function<void(bool)> set);
+  Options& toggle(const char* name, const std::string& help, bool& value);
+  Options& toggle(const char* name, const std::string& help, std::function<void(bool)> set);
   // Of int, int64_t or uint64_t; up to INT64_MAX.
   template <class Integer>
-  Options& integer(char letter, const char* name, const char* arg, const char* help, Integer& value, int64_t low,
+  Options& integer(char letter, const char* name, const char* arg, const std::string& help, Integer& value, int64_t low,
                    int64_t high);
-  Options& real(char letter, const char* name, const char* arg, const char* help, double& value, double low,
+  Options& real(char letter, const char* name, const char* arg, const std::string& help, double& value, double low,
                 double high);
-  Options& text(char letter, const char* name, const char* arg, const char* help, std::string& value);
+  Options& text(char letter, const char* name, const char* arg, const std::string& help, std::string& value);
   // One of these words; any other is a usage error that names them.
-  Options& choice(char letter, const char* name, const char* arg, const char* help, std::string& value,
+  Options& choice(char letter, const char* name, const char* arg, const std::string& help, std::string& value,
                   std::vector<std::string> words);
   // Calls `set` with the argument; std::invalid_argument thrown by it is a usage error that names the option.
-  Options& call(char letter, const char* name, const char* arg, const char* help,
+  Options& call(char letter, const char* name, const char* arg, const std::string& help,
                 std::function<void(const std::string&)> set);
   // Those that mean the same everywhere: -s, -j and -q.
-  Options& seed(uint64_t& value, const char* help = "seed", const char* arg = "N");
-  Options& threads(int& value, const char* help = "threads; 0: as many as there are; results don't depend on it");
-  Options& quiet(bool& value, const char* help = "no progress");
+  Options& seed(uint64_t& value, const std::string& help = "seed", const char* arg = "N");
+  Options& threads(int& value,
+                   const std::string& help = "threads; 0: as many as there are; results don't depend on it");
+  Options& quiet(bool& value, const std::string& help = "no progress");
   // What --help shows as the default of the option added last, in place of the value's own.
   Options& shown_as(const std::string& default_text);
   // A heading in --help above the options that follow.
@@ -72,7 +73,7 @@ class Options {
     char **next, **end;
     const char* take() { return next < end ? *next++ : nullptr; }
   };
-  Options& add(Kind kind, char letter, const std::string& name, const char* arg, const char* help,
+  Options& add(Kind kind, char letter, const std::string& name, const char* arg, const std::string& help,
                std::function<void(const std::string&)> set);
   std::string usage() const;
   [[noreturn]] void wrong(const std::string& message) const;

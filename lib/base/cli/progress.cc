@@ -47,6 +47,12 @@ void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {
   }
 }
 
+void Progress::say(const std::string& text) {
+  if (quiet_) return;
+  std::fprintf(stderr, "%s%s: %s\n", open_ ? "\r\033[K" : "", tool_.c_str(), text.c_str());
+  open_ = false;
+}
+
 void Progress::finish() {
   if (open_) std::fputc('\n', stderr);
   open_ = false;

@@ -15,6 +15,8 @@ class Progress {
   void set_total(uint64_t total) { total_ = total; }
   // `note` is shown after the rate.
   void update(uint64_t done, const std::string& note = "");
+  // A line of its own, "tool: text".
+  void say(const std::string& text);
   // Ends the bar's line, if one is shown.
   void finish();
 

@@ -4,8 +4,8 @@
 
 #include "helpers/numbers.h"
 #include "helpers/policy_fixture.h"
-#include "learn/gae.h"
-#include "learn/ppo.h"
+#include "learn/ppo/gae.h"
+#include "learn/ppo/ppo.h"
 #include "nn/rmsprop.h"
 #include "policy/method/encoded_policy.h"
 #include "policy/method/registry.h"

@@ -7,8 +7,8 @@
 
 #include "format/safetensors.h"
 #include "helpers/numbers.h"
-#include "learn/clipped_objective.h"
-#include "learn/gae.h"
+#include "learn/ppo/clipped_objective.h"
+#include "learn/ppo/gae.h"
 #include "nn/rmsprop.h"
 
 namespace synpo {

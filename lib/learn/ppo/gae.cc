@@ -1,4 +1,4 @@
-#include "learn/gae.h"
+#include "learn/ppo/gae.h"
 
 namespace synpo {
 

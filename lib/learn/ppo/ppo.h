@@ -13,32 +13,14 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "learn/clipped_objective.h"
-#include "learn/gae.h"
+#include "learn/ppo/clipped_objective.h"
+#include "learn/ppo/gae.h"
+#include "learn/ppo/ppo_options.h"
 #include "nn/layers/perceptron.h"
-#include "nn/rmsprop.h"
 #include "play/actors.h"
 #include "play/model.h"
 
 namespace synpo {
-
-struct PpoOptions {
-  int lanes = 16, rollout = 128;    // worlds side by side, and steps of each before an update
-  int epochs = 4, minibatches = 4;  // over a rollout
-  int value_warm_up = 20;           // first rollouts, in which the value alone learns
-  int value_hidden = 512;
-  double value_loss = 1;  // weight of the value's loss
-  ClippingOptions clipping;
-  double gradient_norm = 0.5;
-  GaeOptions gae;
-  RmsPropOptions optimiser;
-  LossWeights losses;  // the auxiliary ones
-  std::map<std::string, std::string> describe() const;
-};
-
-// The auxiliary losses weigh what they did in the run that made the checkpoint; `otherwise` where it does not say.
-// Throws kData for values that are none.
-LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise);
 
 // Means since the report before.
 struct PpoReport {

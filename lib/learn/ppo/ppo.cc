@@ -1,4 +1,4 @@
-#include "learn/ppo.h"
+#include "learn/ppo/ppo.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 
 #include "base/error.h"
 #include "base/take_rows.h"
-#include "base/text.h"
 #include "learn/finite.h"
 #include "nn/softmax.h"
 
@@ -21,43 +20,6 @@ const float* embedding_row(const Model& model, PairSide side, int row, int width
 }
 
 }  // namespace
-
-std::map<std::string, std::string> PpoOptions::describe() const {
-  return {{"ppo.lanes", concat(lanes)},
-          {"ppo.rollout", concat(rollout)},
-          {"ppo.epochs", concat(epochs)},
-          {"ppo.minibatches", concat(minibatches)},
-          {"ppo.value-warm-up", concat(value_warm_up)},
-          {"ppo.value-hidden", concat(value_hidden)},
-          {"ppo.value-loss", shortest(value_loss)},
-          {"ppo.clip", shortest(clipping.clip)},
-          {"ppo.entropy", shortest(clipping.entropy)},
-          {"ppo.gradient-norm", shortest(gradient_norm)},
-          {"ppo.discount", shortest(gae.discount)},
-          {"ppo.lambda", shortest(gae.lambda)},
-          {"ppo.lr", shortest(optimiser.learning_rate)},
-          {"ppo.smoothing", shortest(optimiser.smoothing)},
-          {"ppo.epsilon", shortest(optimiser.epsilon)},
-          {"ppo.weight-decay", shortest(optimiser.weight_decay)},
-          {"ppo.reward-loss", shortest(losses.reward)},
-          {"ppo.env-loss", shortest(losses.env)},
-          {"ppo.task-loss", shortest(losses.task)}};
-}
-
-LossWeights auxiliary_losses(const Checkpoint& from, const LossWeights& otherwise) {
-  LossWeights weights = otherwise;
-  const std::pair<std::string, double*> named[] = {
-      {"reward-loss", &weights.reward}, {"env-loss", &weights.env}, {"task-loss", &weights.task}};
-  for (const auto& [name, weight] : named)
-    for (const std::string& key : {name, "ppo." + name}) {
-      const auto found = from.options.find(key);
-      if (found == from.options.end()) continue;
-      const std::string& text = found->second;
-      if (!parse_whole(text, *weight) || !(*weight >= 0 && *weight <= 1e6))
-        fail(Exit::kData, "option '", key, "': found ", quoted(text), ", expected a number from 0 to 1e6");
-    }
-  return weights;
-}
 
 // The gradient of everything but the auxiliary losses, for the rows of a minibatch.
 class Ppo::RolloutObjective : public Objective<float> {
@@ -362,14 +324,7 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   const SafeTensors& file = checkpoint.file;
   if (!file.has("train/ppo/position"))
     fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
-  for (const auto& [name, value] : options_.describe()) {
-    const auto found = checkpoint.options.find(name);
-    const std::string had = found == checkpoint.options.end() ? "none" : found->second;
-    // Older checkpoints write the same number otherwise.
-    double a, b;
-    if (had != value && !(parse_whole(had, a) && parse_whole(value, b) && a == b))
-      fail(Exit::kData, "the run in the checkpoint has another --", name.substr(4), ": ", had, ", not ", value);
-  }
+  options_.check_same(checkpoint);
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());
   get_tensors(file, "train/ppo/value/v/", value_layout_, value_v_.data());

@@ -1,0 +1,108 @@
+#include "learn/training.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "play/world_factory.h"
+
+namespace synpo {
+namespace {
+
+constexpr int64_t kUnknown = kMostUpdates + 1;  // total of a run whose limit in time has not been told in updates
+
+std::string percent(double part) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.0f %%", 100 * part);
+  return std::isnan(part) ? "-" : text;
+}
+
+// Updates that do not depend on the total: those of the warm-up, all where nothing moves, else the first.
+int64_t updates_to_time(const ImitationOptions& options) {
+  const bool moves = options.cosine || options.balance_final != 0;
+  return options.warm_up > 0 ? std::min<int64_t>(50, int64_t(options.warm_up)) : moves ? 1 : 50;
+}
+
+std::unique_ptr<Imitation> fresh_run(const TrainingSettings& s, const World& world, Parallel& parallel) {
+  std::vector<EnvTask> seen;
+  if (!s.pairs.empty()) seen = read_seen_pairs(world, s.pairs);
+  auto run = std::make_unique<Imitation>(
+      world, parallel, s.method, s.recipe.result(s.method, world.observation_spec().sight), std::move(seen), s.seed);
+  if (!s.init.empty()) {
+    Checkpoint init = load_checkpoint(s.init);
+    init.seen.clear();  // of its own world
+    run->take_weights(load_model(init, world));
+  }
+  run->set_total_updates(s.updates > 0 ? s.updates : kUnknown);
+  return run;
+}
+
+}  // namespace
+
+Training::Training(const TrainingSettings& settings, Parallel& parallel) : settings_(settings) {
+  if (settings.resume.empty()) {
+    world_ = open_world(settings.world);
+    run_ = fresh_run(settings, *world_, parallel);
+  } else {
+    const Checkpoint from = load_checkpoint(settings.resume);
+    world_ = world_of(from, settings.world);
+    run_ = std::make_unique<Imitation>(*world_, parallel, from);
+    if (settings.updates > 0) run_->set_total_updates(settings.updates);
+    if (settings.limit_s == 0 && run_->total_updates() == kUnknown)
+      fail(Exit::kUsage, kNoLimit, "the run was stopped before its limit in time was told in updates");
+  }
+  first_ = run_->updates();
+  timed_ = settings.limit_s > 0 ? updates_to_time(run_->options()) : 0;
+}
+
+bool Training::finished() const {
+  return run_->updates() >= run_->total_updates() && run_->updates() >= first_ + timed_;
+}
+
+uint64_t Training::total() const { return run_->total_updates() == kUnknown ? 0 : uint64_t(run_->total_updates()); }
+
+void Training::check_length() {
+  const uint64_t expected = uint64_t(settings_.expect), length = stream_->length_up_to(expected);
+  if (length < expected)
+    fail(Exit::kData, "the stream ended after ", length, " trajectories, expected ", settings_.expect);
+}
+
+void Training::begin() {
+  input_.emplace("-");
+  stream_.emplace(*input_, *world_, run_->allowed(), run_->window());
+  stream_->skip(run_->stream_lines(), run_->stream_hash());
+  start_ = now();
+}
+
+void Training::update(Progress& progress) {
+  if (!run_->update(*stream_)) fail(Exit::kData, "standard input has no trajectory");
+  if (stream_->ended()) check_length();
+  if (timed_ > 0 && run_->updates() == first_ + timed_) tell_total(progress);
+}
+
+void Training::tell_total(Progress& progress) {
+  const double elapsed_s = seconds_since(start_);
+  run_->set_total_updates(first_ + std::max(timed_, int64_t(settings_.limit_s / elapsed_s * double(timed_))));
+  if (first_ == 0 && settings_.told) progress.say(settings_.told(run_->total_updates()));
+}
+
+void Training::end() {
+  if (stream_) check_length();
+}
+
+std::string Training::report(const Report& report) {
+  RunLogRow row = run_->take_report();
+  row.seconds = report.seconds;
+  row.states_per_s /= report.interval_s;
+  if (report.evaluate_episodes > 0) {
+    row.evaluation = run_->evaluate_sample(report.evaluate_episodes);
+    report.progress.say(concat("update ", row.update, ": success ", percent(row.evaluation->seen_success), " seen, ",
+                               percent(row.evaluation->unseen_success), " unseen"));
+  }
+  report.log.write(run_log_values(row));
+  return short_count(row.states_per_s) + " states/s, loss " + std::to_string(row.loss).substr(0, 5) + ", right: move " +
+         percent(row.right[0]) + " pick " + percent(row.right[1]) + " walk on " + percent(row.right[2]) + " start " +
+         percent(row.right[3]);
+}
+
+}  // namespace synpo

@@ -1,0 +1,69 @@
+// A training by imitation from its settings to its end: where it begins, how long it lasts, its stream, its reports.
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "base/error.h"
+#include "learn/imitate.h"
+#include "learn/long_run.h"
+#include "learn/recipe.h"
+
+namespace synpo {
+
+constexpr int64_t kMostUpdates = INT64_MAX - 1;  // one more stands for a number that is not known yet
+
+struct TrainingSettings : LongRun {
+  TrainingSettings() : LongRun(1000, 100) {}
+
+  // A resumed run has all of these but the limits from its checkpoint; `world` then is where its environments lie.
+  std::string world = "gridworld", pairs, method = "synpo", init;
+  RecipeOptions recipe;
+  // The limit: so many updates in all, or as many as fit into a time; 0: not given, for a resumed run alone.
+  int64_t updates = 0;
+  double limit_s = 0;
+  int64_t expect = 0;  // trajectories that the stream must have
+  // What is said when a limit in time has been turned into a number of updates.
+  std::function<std::string(int64_t total)> told = nullptr;
+};
+
+// A run that was stopped while its limit in time was still unknown as a number of updates goes on without a limit.
+constexpr Cause kNoLimit{"no limit"};
+
+class Training : public LongWork {
+ public:
+  // Opens the world and the checkpoints. Throws kUsage (also kNoLimit), kData and what opening them throws. The
+  // settings must live as long.
+  Training(const TrainingSettings& settings, Parallel& parallel);
+
+  const Imitation& run() const { return *run_; }
+
+  void begin() override;
+  void update(Progress& progress) override;
+  void end() override;
+  int64_t updates() const override { return run_->updates(); }
+  bool finished() const override;
+  bool has_learned() const override { return run_->updates() > 0; }
+  const char* unit() const override { return "updates"; }
+  uint64_t done() const override { return uint64_t(run_->updates()); }
+  uint64_t total() const override;
+  const std::vector<std::string>& columns() const override { return run_log_columns(); }
+  std::string report(const Report& report) override;
+  Checkpoint checkpoint(bool with_training_state) const override { return run_->checkpoint(with_training_state); }
+
+ private:
+  void check_length();
+  void tell_total(Progress& progress);
+
+  const TrainingSettings& settings_;
+  std::unique_ptr<World> world_;
+  std::unique_ptr<Imitation> run_;
+  std::optional<Input> input_;
+  std::optional<TrajectoryStream> stream_;
+  // A limit in time is told in updates by the rate of the first `timed_` ones.
+  int64_t first_ = 0, timed_ = 0;
+  TimePoint start_;
+};
+
+}  // namespace synpo

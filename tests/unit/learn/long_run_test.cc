@@ -1,0 +1,80 @@
+#include "learn/long_run.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "helpers/table_helpers.h"
+#include "helpers/temporary.h"
+
+namespace synpo {
+namespace {
+
+// Seven updates that say what is asked of them; a checkpoint has its number for a seed.
+struct Counting : LongWork {
+  void begin() override { said += "begin "; }
+  void update(Progress&) override { said += std::to_string(++made) + " "; }
+  void end() override { said += "end"; }
+  int64_t updates() const override { return made; }
+  bool finished() const override { return made >= wanted; }
+  const char* unit() const override { return "updates"; }
+  uint64_t done() const override { return uint64_t(made); }
+  uint64_t total() const override { return uint64_t(wanted); }
+  const std::vector<std::string>& columns() const override {
+    static const std::vector<std::string> names = {"update"};
+    return names;
+  }
+  std::string report(const Report& report) override {
+    said += report.evaluate_episodes ? "evaluate" + std::to_string(report.evaluate_episodes) + " " : "report ";
+    EXPECT_GE(report.interval_s, 0);
+    EXPECT_GE(report.seconds, report.interval_s);
+    report.log.write({double(made)});
+    return "";
+  }
+  Checkpoint checkpoint(bool with_training_state) const override {
+    said += with_training_state ? "save " : "strip ";
+    Checkpoint c;
+    c.seed = uint64_t(made);
+    return c;
+  }
+  int64_t made = 0, wanted = 7;
+  mutable std::string said;
+};
+
+struct LongRunTest : testing::Test {
+  LongRunTest() {
+    settings.quiet = true;
+    settings.output = folder.file("out");
+    settings.save = folder.file("save");
+    settings.log = folder.file("log");
+    settings.evaluate_episodes = 9;
+  }
+  const TemporaryFolder folder;
+  LongRun settings{3, 2};
+  Counting work;
+};
+
+TEST_F(LongRunTest, ReportsEvaluatesAndSavesAtItsUpdates) {
+  settings.evaluate_every = 5;
+  settings.strip = true;
+  EXPECT_EQ(settings.drive("tool", work), 0);
+  EXPECT_EQ(work.said, "begin 1 2 report 3 save 4 report 5 evaluate9 6 report save 7 evaluate9 save endstrip ");
+  EXPECT_EQ(contents(settings.log), "update\n2\n4\n5\n6\n7\n");
+}
+
+TEST_F(LongRunTest, AFinishedRunIsWrittenAsItIs) {
+  work.made = 7;
+  EXPECT_EQ(settings.drive("tool", work), 0);
+  EXPECT_EQ(work.said, "save endsave ");
+  EXPECT_EQ(contents(settings.save), contents(settings.output));
+}
+
+TEST_F(LongRunTest, OutputsAreFoundBeforeTheWork) {
+  settings.output = folder.file("none/out");
+  EXPECT_EQ(thrown([&] { settings.drive("tool", work); }).substr(0, 2), "73");
+  EXPECT_EQ(work.said, "");
+}
+
+}  // namespace
+}  // namespace synpo
