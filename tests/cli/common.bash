@@ -35,15 +35,35 @@ complain() {
     return 1
 }
 
-# fails CODE TOOL ARGUMENT...: the exit code is CODE, the last words on stderr are "TOOL: ...", and no new file is left.
+# Options that a text names and the command COMMAND... does not have; those of a program named before them are its own.
+options_lacking() {
+    local text=$1 help option
+    shift
+    text=$(sed -E "s/(synpo-[a-z-]+( [a-z]+)?|tr) --?[a-z-]+//g" <<<"$text")
+    text=$(grep -oE "(^|[ (])--?[a-z][a-z-]*" <<<"$text" | tr -d ' (' | sort -u) || return 0
+    help=$("$@" --help)
+    for option in $text; do
+        grep -qE -- "^ +(-[a-zA-Z], )?(--[a-z0-9-]+, )?$option([ ,]|$)" <<<"$help" || printf '%s ' "$option"
+    done
+}
+
+# fails CODE TOOL ARGUMENT...: the exit code is CODE, the last words on stderr are "TOOL: ...", they name no option that
+# the command does not have, unless it was given, and no new file is left.
 # stdout goes to $OUT, or ../out; stderr to ../err, for `says`.
 fails() {
-    local code=$1 before after status=0
+    local code=$1 before after option status=0
     shift
+    local command=("$1")
     before=$(find . | sort)
     "$@" >"${OUT:-$BATS_TEST_TMPDIR/out}" 2>"$BATS_TEST_TMPDIR/err" || status=$?
     [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat "$BATS_TEST_TMPDIR/err")"
     tail -n 1 "$BATS_TEST_TMPDIR/err" | grep -q "^$1: ." || complain "$*: found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1: ...'"
+    case $1 in
+        synpo-matrix | synpo-render | synpo-finetune) [[ ${2-} != [a-z]* ]] || command=("$1" "$2") ;;
+    esac
+    for option in $(options_lacking "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" "${command[@]}" 2>/dev/null); do
+        [[ " $* " == *" $option"* ]] || complain "$*: '$(cat "$BATS_TEST_TMPDIR/err")' names $option"
+    done
     after=$(find . | sort)
     [ "$before" = "$after" ] || complain "$*: left files: $(diff <(echo "$before") <(echo "$after"))"
 }
