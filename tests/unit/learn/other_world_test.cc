@@ -7,7 +7,7 @@
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
 #include "learn/imitate.h"
-#include "learn/ppo.h"
+#include "learn/ppo/ppo.h"
 #include "play/evaluate.h"
 
 namespace synpo {
