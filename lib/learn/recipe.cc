@@ -266,10 +266,10 @@ void RecipeOptions::add_to(Options& options) {
     const std::string a = default_of(hyper, "fast"), b = default_of(hyper, "paper");
     const std::string shown = hyper.help + (a == b ? " [" + a + "]" : " [fast " + a + ", paper " + b + "]");
     if (is_toggle(hyper)) {
-      options.toggle(hyper.name, shown, [this, &hyper](bool on) { changes_[hyper.name] = on; });
+      options.toggle(hyper.name.c_str(), shown, [this, &hyper](bool on) { changes_[hyper.name] = on; });
       continue;
     }
-    options.call(0, hyper.name, "X", shown, [this, &hyper](const std::string& text) {
+    options.call(0, hyper.name.c_str(), "X", shown, [this, &hyper](const std::string& text) {
       double value = 0;
       if (!parse(text, hyper, value)) throw std::invalid_argument(expectation(hyper));
       changes_[hyper.name] = value;

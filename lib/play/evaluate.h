@@ -38,11 +38,11 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
 
 // Episodes first .. first + count - 1 of every pair.
 struct MatrixPlan {
-  std::string pairs_file;  // that names the pairs, for messages
   std::vector<PairRow> pairs;
   int64_t count = 100, first = 0;
   uint64_t seed = 1;
   double temperature = 0;
+  std::string pairs_file = "";  // that names the pairs, for messages
 };
 
 // The success matrix of a policy, a row for each pair in their order; `run` names its weights.
