@@ -14,7 +14,7 @@ map() {
 
 @test "a folder of maps is a world; names in natural order, other files ignored" {
     for i in 10 2 1; do map maps/map$i.txt; done
-    echo "not a map" >maps/notes.txt
+    echo "not a map" >maps/notes.md
     synpo-gen-expert -w gridworld:maps --per-pair 1 >e.jsonl
     jq -r .env e.jsonl | uniq >got
     printf 'map1\nmap2\nmap10\n' | cmp - got
