@@ -61,7 +61,7 @@ std::vector<Curve> read_curves(const std::string& path, RunLogAxis axis, double 
       }
   if (values == 0)
     fail(Exit::kData, input.name(), ": no value of ", name, " in ", log.x.size(), log.x.size() == 1 ? " row" : " rows",
-         measure.parts[0].empty() ? "" : ": synpo-train evaluates with --evaluate-every");
+         measure.parts[0].empty() ? "" : ": the run made no evaluation");
   return curves;
 }
 
