@@ -1,10 +1,7 @@
 #include "base/text.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <cstdio>
-
-#include "base/error.h"
 
 namespace synpo {
 
@@ -24,13 +21,27 @@ size_t utf8_length(std::string_view text, size_t at) {
   return overlong || surrogate || too_high ? 0 : length;
 }
 
+Character character_at(std::string_view text, size_t at) {
+  const size_t length = utf8_length(text, at);
+  if (length == 0) return {};
+  uint32_t code = uint8_t(text[at]) & (length == 1 ? 0x7f : 0x7f >> length);
+  for (const char next : text.substr(at + 1, length - 1)) code = code << 6 | (uint8_t(next) & 0x3f);
+  return {length, code};
+}
+
+bool is_control(uint32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
+
+size_t printable_length(std::string_view text, size_t at) {
+  const auto [length, code] = character_at(text, at);
+  const bool direction = code == 0x61c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) ||
+                         (code >= 0x2066 && code <= 0x2069);
+  return is_control(code) || direction ? 0 : length;
+}
+
 size_t first_bad_byte(std::string_view text) {
   for (size_t i = 0; i < text.size();) {
-    const uint8_t lead = uint8_t(text[i]);
-    const size_t length = utf8_length(text, i);
-    const bool c1 = lead == 0xc2 && length == 2 && uint8_t(text[i + 1]) < 0xa0;
-    const bool control = (lead < 0x20 && lead != '\t') || lead == 0x7f || c1;
-    if (control || length == 0) return i;
+    const auto [length, code] = character_at(text, i);
+    if (length == 0 || (is_control(code) && code != '\t')) return i;
     i += length;
   }
   return std::string_view::npos;
@@ -39,13 +50,14 @@ size_t first_bad_byte(std::string_view text) {
 std::string fault_of_name(std::string_view name) {
   if (name.empty()) return "found an empty name, expected one of 1 to " + std::to_string(kLongestName) + " bytes";
   if (name.size() > kLongestName)
-    return concat("found a name of ", name.size(), " bytes, expected at most ", kLongestName);
+    return "found a name of " + std::to_string(name.size()) + " bytes, expected at most " +
+           std::to_string(kLongestName);
   const size_t at = std::min(first_bad_byte(name), name.find('\t'));
   if (at == std::string_view::npos) return "";
   char byte[8];
   std::snprintf(byte, sizeof byte, "\\x%02x", uint8_t(name[at]));
-  return concat("found ", uint8_t(name[at]) < 0x80 ? "a control character" : "invalid UTF-8", " at byte ", at + 1,
-                " of the name (", byte, "), expected UTF-8 text");
+  return std::string("found ") + (uint8_t(name[at]) < 0x80 ? "a control character" : "invalid UTF-8") + " at byte " +
+         std::to_string(at + 1) + " of the name (" + byte + "), expected UTF-8 text";
 }
 
 bool natural_less(const std::string& a, const std::string& b) {

@@ -2,6 +2,7 @@
 #pragma once
 #include <charconv>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -11,6 +12,20 @@ namespace synpo {
 // Bytes of the character at `at`; 0 where no well-formed one begins (no overlong form, no surrogate, at most
 // U+10FFFF).
 size_t utf8_length(std::string_view text, size_t at);
+
+// The character at `at`; of no bytes where no well-formed one begins.
+struct Character {
+  size_t length = 0;  // bytes
+  uint32_t code = 0;  // Unicode's number of it
+};
+Character character_at(std::string_view text, size_t at);
+
+// Whether a terminal acts on this character where it should show it: C0 and C1 control characters and DEL.
+bool is_control(uint32_t code);
+
+// Bytes of the character at `at` where it can go to a terminal as it is; 0 where no well-formed one begins, for control
+// characters (tabs and line ends too), and for marks that turn the direction of what follows.
+size_t printable_length(std::string_view text, size_t at);
 
 // Where the first byte stands that is not part of valid UTF-8 or that is a control character other than a tab; npos
 // when there is no such byte.

@@ -1,5 +1,6 @@
 #include "format/checkpoint.h"
 
+#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -65,22 +66,19 @@ OrderedJson to_json(const Checkpoint& c) {
   return out;
 }
 
-// JSON text with the characters escaped that JSON allows raw and a terminal acts on: DEL and the C1 controls.
-std::string without_controls(const std::string& text) {
+// Valid JSON text with the characters escaped that JSON allows raw and that no terminal should get.
+std::string fit_for_terminal(const std::string& text) {
   std::string out;
-  for (size_t i = 0; i < text.size(); ++i) {
-    const auto byte = [&](size_t at) { return at < text.size() ? uint8_t(text[at]) : 0; };
-    if (byte(i) == 0x7f) {
-      out += "\\u007f";
-    } else if (byte(i) == 0xc2 && byte(i + 1) >= 0x80 && byte(i + 1) < 0xa0) {
-      static const char digits[] = "0123456789abcdef";
-      out += "\\u00";
-      out += digits[byte(i + 1) >> 4];
-      out += digits[byte(i + 1) & 15];
-      ++i;
+  for (size_t i = 0; i < text.size();) {
+    const auto [length, code] = character_at(text, i);
+    if (printable_length(text, i) > 0 || code == '\n') {
+      out.append(text, i, length);
     } else {
-      out += text[i];
+      char escape[8];
+      std::snprintf(escape, sizeof escape, "\\u%04x", unsigned(code));
+      out += escape;
     }
+    i += length;
   }
   return out;
 }
@@ -103,7 +101,7 @@ std::string Checkpoint::describe() const {
   out["weights_hash"] = hex(weights_hash());
   OrderedJson& tensors = out["tensors"] = OrderedJson::object();
   for (const auto& [name, tensor] : file.tensors) tensors[name] = tensor.shape;
-  return without_controls(out.dump(2));
+  return fit_for_terminal(out.dump(2));
 }
 
 Checkpoint read_checkpoint(Input& input) {

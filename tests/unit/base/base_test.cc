@@ -124,12 +124,34 @@ TEST(Text, FirstBadByte) {
     EXPECT_EQ(bad(std::string("x") + wrong), 1);
 }
 
+// C0, DEL, C1, and the marks that turn the direction: of each range its first and last, and what stands beside them.
+TEST(Text, PrintableLengthIsZeroForWhatATerminalActsOn) {
+  for (const char* no : {"\x01", "\t", "\n", "\x1b", "\x1f", "\x7f", "\xc2\x80", "\xc2\x9b", "\xc2\x9f", "\u061c",
+                         "\u200e", "\u200f", "\u202a", "\u202e", "\u2066", "\u2069", "\xff", "\xc2", ""})
+    EXPECT_EQ(printable_length(no, 0), 0u) << quoted(no);
+  EXPECT_EQ(printable_length(std::string_view("\0", 1), 0), 0u);
+  for (const char* yes : {" ", "~", "\u00a0", "\u00e9", "\u061b", "\u061d", "\u200d", "\u2010", "\u2029", "\u202f",
+                          "\u2065", "\u206a", "\U0010ffff"})
+    EXPECT_EQ(printable_length(yes, 0), std::string_view(yes).size()) << yes;
+}
+
+TEST(Text, CharactersHaveTheNumbersOfUnicode) {
+  for (const auto& [text, code] : std::initializer_list<std::pair<const char*, uint32_t>>{
+           {"A", 0x41}, {"\u00e9", 0xe9}, {"\u20ac", 0x20ac}, {"\U0010ffff", 0x10ffff}}) {
+    const Character found = character_at(std::string("x") + text, 1);
+    EXPECT_EQ(found.code, code);
+    EXPECT_EQ(found.length, std::string_view(text).size());
+  }
+  EXPECT_EQ(character_at("\xff", 0).length, 0u);
+}
+
 TEST(Quoted, ShowsForeignInputSafely) {
   EXPECT_EQ(quoted("map1"), "'map1'");
   EXPECT_EQ(quoted(""), "''");
   EXPECT_EQ(quoted("a\tb\n\x1b[31m\x7f"), "'a\\x09b\\x0a\\x1b[31m\\x7f'");
   EXPECT_EQ(quoted("\xc3\xa9\xff\xc3"), "'\xc3\xa9\\xff\\xc3'");
-  EXPECT_EQ(quoted("\xc2\x9b"), "'\\xc2\\x9b'");  // a C1 control character
+  EXPECT_EQ(quoted("\xc2\x9b"), "'\\xc2\\x9b'");         // a C1 control character
+  EXPECT_EQ(quoted("a\u202eb"), "'a\\xe2\\x80\\xaeb'");  // turns the direction
   EXPECT_EQ(quoted(std::string("\0x", 2)), "'\\x00x'");
   const std::string cut = quoted(std::string(1000, 'a'));
   EXPECT_LT(cut.size(), 70u);

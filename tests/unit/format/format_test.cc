@@ -255,6 +255,16 @@ TEST(Checkpoint, DescribesItself) {
   EXPECT_EQ(description["tensors"]["theta"], nlohmann::json::array({2}));
 }
 
+TEST(Checkpoint, DescribesItselfWithoutWhatATerminalActsOn) {
+  const std::string risky = "\x1b\x7f\u009b\u202e\u2066\u200f\u061c\t\n", fine = "\u00e9\u00a0\U0001f600";
+  Checkpoint c = small_checkpoint();
+  c.extractor = risky + fine;
+  const std::string text = c.describe();
+  EXPECT_NE(text.find(R"("\u001b\u007f\u009b\u202e\u2066\u200f\u061c\t\n)" + fine + "\""), std::string::npos)
+      << quoted(text);
+  EXPECT_EQ(nlohmann::json::parse(text)["extractor"], risky + fine);
+}
+
 TEST(Checkpoint, TheHashIsOfWhatEvaluationNeeds) {
   Checkpoint c = small_checkpoint();
   const uint64_t hash = c.weights_hash();
