@@ -29,6 +29,39 @@ void note_new_pairs(const Matrix& matrix) {
                  (long long)count, matrix.rows.size());
 }
 
+// Where the matrix and the record of its episodes go. A record that cannot be written does not cost the matrix.
+class Results {
+ public:
+  // No matrix where the record takes its place on stdout.
+  Results(const std::string& output_path, bool output_given, const std::string& record_path) {
+    const bool records_to_stdout = record_path == "-";
+    if (records_to_stdout && output_path == "-" && output_given)
+      fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
+    if (!record_path.empty()) record_.emplace(record_path);
+    if (!records_to_stdout || output_path != "-") output_.emplace(output_path);
+  }
+  EpisodeSink sink() {
+    if (!record_) return nullptr;
+    return [this](const Trajectory& trajectory) {
+      record_->write(format_trajectory(trajectory) + "\n");
+      if (!output_) record_->check();
+    };
+  }
+  bool have_matrix() const { return output_.has_value(); }
+  void finish(const Matrix& matrix) {
+    if (record_) record_->finish();
+    if (output_) {
+      write_matrix(*output_, matrix);
+      output_->finish();
+    }
+    if (record_) record_->check();
+  }
+
+ private:
+  std::optional<SideOutput> record_;
+  std::optional<Output> output_;
+};
+
 int body(int argc, char** argv) {
   std::string checkpoint_path = "-", pairs_path, world_name, output_path = "-", record_path;
   MatrixPlan plan;
@@ -66,36 +99,18 @@ int body(int argc, char** argv) {
   plan.pairs_file = pairs_path;
   plan.pairs = pairs_path.empty() ? all_pairs(*world) : read_pairs(pairs_path);
 
-  const bool records_to_stdout = record_path == "-";
-  if (records_to_stdout && output_path == "-" && options.given("output"))
-    fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
-  std::optional<SideOutput> record;
-  std::optional<Output> output;
-  if (!record_path.empty()) record.emplace(record_path);
-  if (!records_to_stdout || output_path != "-") output.emplace(output_path);
-
+  Results results(output_path, options.given("output"), record_path);
   catch_stop_signals();
   Parallel parallel(threads);
   Progress progress("synpo-eval", "episodes", plan.pairs.size() * size_t(plan.count), quiet);
-  EpisodeSink sink;
-  if (record)
-    sink = [&](const Trajectory& trajectory) {
-      record->write(format_trajectory(trajectory) + "\n");
-      if (!output) record->check();
-    };
   const std::string run = hex(checkpoint.weights_hash());
-  const Matrix matrix = success_matrix(parallel, *world, model, run, plan, sink, [&](size_t done) {
+  const Matrix matrix = success_matrix(parallel, *world, model, run, plan, results.sink(), [&](size_t done) {
     progress.update(done);
     stop_if_asked();
   });
   progress.finish();
-  if (record) record->finish();
-  if (output) {
-    write_matrix(*output, matrix);
-    output->finish();
-  }
-  if (record) record->check();
-  if (output && !quiet) note_new_pairs(matrix);
+  results.finish(matrix);
+  if (results.have_matrix() && !quiet) note_new_pairs(matrix);
   return 0;
 }
 

@@ -23,20 +23,33 @@ std::vector<std::string> any_names(const std::string& option, const std::string&
   return names;
 }
 
+// The help of -w.
+std::string worlds_or_any() {
+  std::string list;
+  for (const std::string& name : world_names()) list += name + ", ";
+  return list + "or any for names of your own";
+}
+
+// The plan's environments and tasks: those that were asked for, of all that the world has.
+void take_names(const std::string& world, const std::string& envs, const std::string& tasks, SplitPlan& plan) {
+  if (world == "any") {
+    plan.envs = any_names("--envs", envs, "env");
+    plan.tasks = any_names("--tasks", tasks, "task");
+    return;
+  }
+  const std::unique_ptr<World> opened = open_world(world);
+  std::vector<std::string> env_names;
+  for (const Environment& env : opened->environments()) env_names.push_back(env.name);
+  plan.envs = choose_names("--envs", envs, env_names);
+  plan.tasks = choose_names("--tasks", tasks, opened->task_names());
+}
+
 }  // namespace
 
 int matrix_split(int argc, char** argv) {
   SplitPlan plan;
   std::string world = "gridworld", envs, tasks, output_path = "-";
   std::vector<std::string> parts;
-  const auto add_single = [&](const std::string& text) {
-    const std::vector<std::string> names = split_names(text);
-    if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
-    plan.singles.emplace_back(names[0], names[1]);
-  };
-  std::string worlds;
-  for (const std::string& name : world_names()) worlds += name + ", ";
-  worlds += "or any for names of your own";
   Options options("synpo-matrix split", "[OPTION]... >PAIRS",
                   "Draws which pairs of environments and tasks are seen in training.");
   options.integer('n', "seen", "COUNT", "seen pairs", plan.seen, 0, INT64_MAX)
@@ -48,9 +61,10 @@ int matrix_split(int argc, char** argv) {
             })
       .integer(0, "cover", "COUNT", "at least so many seen per environment and task", plan.cover, 0, INT64_MAX)
       .shown_as("4, or what -n allows")
-      .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated", add_single)
+      .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated",
+            [&](const std::string& text) { plan.singles.push_back(split_pair_name(text)); })
       .seed(plan.seed, "seed of the draw", "SEED")
-      .text('w', "world", "WORLD", worlds, world)
+      .text('w', "world", "WORLD", worlds_or_any(), world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")
@@ -71,16 +85,7 @@ int matrix_split(int argc, char** argv) {
   if (options.given("seen") && options.given("ratio")) fail(Exit::kUsage, "give either --seen or --ratio");
   if (!parts.empty() && plan.setting == 1)
     fail(Exit::kUsage, "--part ", quoted(parts[0]), ": there are no parts without --setting 2 or 3");
-  if (world == "any") {
-    plan.envs = any_names("--envs", envs, "env");
-    plan.tasks = any_names("--tasks", tasks, "task");
-  } else {
-    const std::unique_ptr<World> opened = open_world(world);
-    std::vector<std::string> env_names;
-    for (const Environment& env : opened->environments()) env_names.push_back(env.name);
-    plan.envs = choose_names("--envs", envs, env_names);
-    plan.tasks = choose_names("--tasks", tasks, opened->task_names());
-  }
+  take_names(world, envs, tasks, plan);
 
   std::vector<PairRow> rows;
   for (const SplitPair& pair : split_pairs(plan))

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <stdexcept>
 
 #include "base/error.h"
 #include "base/random.h"
@@ -231,6 +232,12 @@ std::vector<std::string> split_names(const std::string& list) {
       names.back() += c;
   }
   return names;
+}
+
+std::pair<std::string, std::string> split_pair_name(const std::string& text) {
+  const std::vector<std::string> names = split_names(text);
+  if (names.size() != 2) throw std::invalid_argument("expected ENV,TASK");
+  return {names[0], names[1]};
 }
 
 std::vector<std::string> choose_names(const std::string& option, const std::string& chosen,

@@ -46,6 +46,8 @@ std::vector<SplitPair> split_pairs(const SplitPlan& plan);
 
 // The parts between commas; "" is one empty name.
 std::vector<std::string> split_names(const std::string& list);
+// "ENV,TASK". Throws std::invalid_argument for another number of names.
+std::pair<std::string, std::string> split_pair_name(const std::string& text);
 
 // The names that the option `option` chooses among `names`: all of them (""), the first so many ("5"), or those listed
 // ("map1,map7"), in the order of the list. Throws kUsage for a name that is not among them.
