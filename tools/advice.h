@@ -1,4 +1,4 @@
-// What the tools say about failures of the library, where an option of theirs helps.
+// The tools say this about failures of the library, where an option of theirs helps.
 #pragma once
 #include "base/cli/options.h"
 #include "learn/adapt.h"

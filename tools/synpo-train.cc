@@ -33,7 +33,7 @@ int body(int argc, char** argv) {
   Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, kMostUpdates)
-      .call(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h), told from the first ones",
+      .call(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h) at the rate of the first ones",
             [&](const std::string& text) { s.limit_s = parse_seconds(limit = text); })
       .text('p', "pairs", "FILE", "the seen pairs: TSV env, task, seen (the pairs that the stream brings first)",
             s.pairs)

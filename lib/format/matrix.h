@@ -17,7 +17,8 @@ constexpr size_t kMatrixExtraFields = 16000000;
 constexpr int64_t kMatrixCount = 1000000000000;
 constexpr double kMatrixReward = 1e15;
 
-// What training knows of a pair: the pair itself, or its environment and its task from other pairs, or not even those.
+// How a pair stands to training, which saw the pair itself, or its environment and its task in other pairs alone, or
+// not even those.
 enum class Standing { kSeen, kUnseen, kNew };
 const char* name_of(Standing standing);  // seen, unseen, new
 

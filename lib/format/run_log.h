@@ -51,7 +51,7 @@ class TsvLog {
 const std::vector<std::string>& run_log_columns();
 std::vector<double> run_log_values(const RunLogRow& row);
 
-// The axis that a log's rows are put against. Minutes are of training up to the row: those of resumed runs are added
+// The axis along which a log's rows stand. Minutes are of training up to the row: those of resumed runs are added
 // up, and updates that were done again count once.
 enum class RunLogAxis { kUpdates, kStates, kMinutes };
 

@@ -1,4 +1,4 @@
-// What chance alone does.
+// False alarms: differences that chance alone makes.
 #pragma once
 #include <cstdint>
 

@@ -28,11 +28,11 @@ namespace {
   std::exit(0);
 }
 
-// What all tools say.
+// All tools say this.
 const std::vector<Advice> kCommonAdvice = {{kTerminalInput, "{} (see --help)"},
                                            {kTerminalOutput, "{}: use -o FILE, or -f to force it"}};
 
-// What was thrown, in the tool's own words.
+// The error that was thrown, in the tool's own words.
 Error advised(const Error& error, const std::vector<Advice>& advice) {
   for (const Advice& one : advice) {
     if (!error.has(one.cause)) continue;

@@ -44,7 +44,7 @@ class Options {
   Options& threads(int& value,
                    const std::string& help = "threads; 0: as many as there are; results don't depend on it");
   Options& quiet(bool& value, const std::string& help = "no progress");
-  // What --help shows as the default of the option added last, in place of the value's own.
+  // --help shows this as the default of the option added last, in place of the value's own.
   Options& shown_as(const std::string& default_text);
   // A heading in --help above the options that follow.
   Options& section(const char* title);
@@ -91,7 +91,7 @@ double parse_seconds(const std::string& text);
 int64_t parse_count(const std::string& text);
 double parse_number(const std::string& text);
 
-// What a tool says about failures of this cause: `words`, with the library's message in place of {}. It may name the
+// A tool says this about failures of a cause: `words`, with the library's message in place of {}. It may name the
 // tool's options.
 struct Advice {
   Cause cause;

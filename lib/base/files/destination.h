@@ -39,8 +39,8 @@ struct FolderAndName {
 FolderAndName split_path(const std::string& path);
 // `path`, and what it links to if it is a link, and so on. Throws kCantCreate for links without an end.
 std::string follow_links(const std::string& path);
-// Makes sure that the names in a folder reach the disk. False, with errno, where that fails; a folder or a system that
-// does not allow it is none.
+// Makes sure that the names in a folder reach the disk. False, with errno, where that fails, but not
+// for a folder or a system that does not allow it.
 bool sync_folder(const std::string& folder);
 
 }  // namespace synpo

@@ -1,4 +1,4 @@
-// What one command reads and writes, so that no output destroys an input or another output.
+// Keeps track of the files that one command reads and writes, so that no output destroys an input or another output.
 #pragma once
 #include <sys/stat.h>
 
@@ -9,7 +9,7 @@
 
 namespace synpo {
 
-// What a file is, by whatever name: the number of one that is there, and folder and name of one that will be.
+// Identifies a file, by whatever name: the number of one that is there, and folder and name of one that will be.
 struct FileIdentity {
   struct Number {
     dev_t device;

@@ -34,7 +34,7 @@ std::string machine_mark() {
   return letters(Hash().add(std::string(host)).value(), kMark);
 }
 
-// What the temporaries of a path have before and after their random letters.
+// The names of a path's temporaries: their folder, and what stands before and after their random letters.
 struct Pattern {
   std::string folder, before, after;
 

@@ -14,7 +14,7 @@ enum class TerminalColour { kNone, k256, kTrue };  // 24 bits where COLORTERM sa
 TerminalColour terminal_colour(int fd);
 // As above, but taking it for a terminal.
 TerminalColour environment_colour();
-// Columns of the terminal, 0 where it is none.
+// Columns of the terminal, 0 where `fd` is no terminal.
 int terminal_width(int fd);
 
 // The escape sequence for a block of this colour with readable text on it.

@@ -52,7 +52,8 @@ class TemporalNet : public Encoder<T> {
   void pack_first(Parallel& parallel, const T* parameters, Packed<T>* taps) const;
   // The first convolution of some states, to y1 [n, 2, channels].
   void convolve(int n, const T* x, const Packed<T>* taps, const T* bias, T* y1) const;
-  // What follows the second one's outputs, where those of x hold on to, in joined [n, joined_width()].
+  // The embedding of each state's object, from objects [objects, object_embedding], to joined [n, joined_width()],
+  // where it follows the second convolution's outputs.
   void put_objects(int n, const T* x, const T* objects, T* joined) const;
 
   int view_, object_count_;  // of ObservationSpec

@@ -82,7 +82,7 @@ class Merger {
     pairs_[at].push_back(std::move(placed));
   }
 
-  // What some sources say of the environment and of the pair, in the rows of those that do not.
+  // Copies what some sources say of the environment and of the pair into the rows of those that do not.
   void complete(std::vector<Placed>& pair) const {
     const MatrixRow& one = pair.front().row;
     const std::string training = training_key(one), env = training + '\t' + one.env;

@@ -93,7 +93,7 @@ bool same_seeds(const Group& a, const Group& b) {
   return set_a == set_b && set_a.size() == seeds_a.size() && set_b.size() == seeds_b.size();
 }
 
-// What a run did on a pair.
+// The outcome of a run on a pair.
 struct RunCounts {
   size_t run;
   Standing standing;

@@ -37,7 +37,7 @@ std::string listed(const std::vector<std::string>& words) {
   return text;
 }
 
-// What the interval of a subset is over, and what it is not.
+// Says what the interval of a subset is over, and what it is not.
 std::string interval_words(const Comparison& c) {
   const bool one_each = c.runs_a == 1 && c.runs_b == 1;
   std::vector<std::string> over;

@@ -117,7 +117,7 @@ TEST(Curves, AMarkOfOnePanelLeavesThePlotsAsWideAsOneAnother) {
   const CurvesLayout::Panel &seen = layout.panels[0], &unseen = layout.panels[1];
   EXPECT_EQ(seen.plot.width, unseen.plot.width);
   EXPECT_GT(unseen.area.right() - unseen.plot.right(), seen.area.right() - seen.plot.right() + layout.mark_space);
-  EXPECT_NEAR(unseen.area.right(), layout.width - layout.margin, 1);  // half of a pixel is none
+  EXPECT_NEAR(unseen.area.right(), layout.width - layout.margin, 1);  // there are no half pixels
 }
 
 TEST(Curves, CaptionSaysWhatTheBandIs) {

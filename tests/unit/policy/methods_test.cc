@@ -71,8 +71,8 @@ INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const au
 
 constexpr double kDropout = 0.3;
 
-// SF's temporal difference holds its targets fixed, so that its gradient is none of its loss; but where they are
-// constant it is: with phi constant, and no step after it. phi's own gradient has a test below.
+// SF's temporal difference holds its targets fixed, so that what it calls its gradient is not that of its loss. Where
+// they are constant, it is: with phi constant, and no step after it. phi's own gradient has a test below.
 TEST_P(Methods, GradientsAreFiniteDifferences) {
   Network<double> net = network<double>();
   net.shake();
