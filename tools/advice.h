@@ -1,11 +1,15 @@
 // The tools say this about failures of the library, where an option of theirs helps.
 #pragma once
+#include <string>
+
 #include "base/cli/options.h"
+#include "base/error.h"
 #include "learn/adapt.h"
 #include "learn/finite.h"
 #include "learn/imitate.h"
 #include "play/episode.h"
 #include "play/model.h"
+#include "play/stream.h"
 #include "play/world_factory.h"
 
 namespace synpo {
@@ -15,5 +19,11 @@ constexpr Advice kNameFolder = {kNoSource, "{}: name their folder with -w kitche
 constexpr Advice kNameOtherFolder = {kOtherSource, "{}, expected -w kitchen:DIR"};
 constexpr Advice kLeaveWorld = {kNeedsNoSource, "{}: -w is for those that lie in files of their own"};
 constexpr Advice kSmallerRate = {kNotFinite, "{}: try a smaller --lr"};
+
+inline std::string words(const TestedStart& start) {
+  return concat("line ", start.line, " begins where episode ", start.episode, " of synpo-eval -s ", start.seed,
+                " begins: success measured with that seed will be of starts that were learned from",
+                " (synpo-eval --starts training records others)");
+}
 
 }  // namespace synpo

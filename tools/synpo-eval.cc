@@ -32,13 +32,13 @@ void note_new_pairs(const Matrix& matrix) {
 // Where the matrix and the record of its episodes go. A record that cannot be written does not cost the matrix.
 class Results {
  public:
-  // No matrix where the record takes its place on stdout.
-  Results(const std::string& output_path, bool output_given, const std::string& record_path) {
+  // No matrix where the record takes its place on stdout, or where none is wanted.
+  Results(const std::string& output_path, bool output_given, const std::string& record_path, bool wants_matrix) {
     const bool records_to_stdout = record_path == "-";
     if (records_to_stdout && output_path == "-" && output_given)
       fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
     if (!record_path.empty()) record_.emplace(record_path);
-    if (!records_to_stdout || output_path != "-") output_.emplace(output_path);
+    if (wants_matrix && (!records_to_stdout || output_path != "-")) output_.emplace(output_path);
   }
   EpisodeSink sink() {
     if (!record_) return nullptr;
@@ -63,7 +63,7 @@ class Results {
 };
 
 int body(int argc, char** argv) {
-  std::string checkpoint_path = "-", pairs_path, world_name, output_path = "-", record_path;
+  std::string checkpoint_path = "-", pairs_path, world_name, output_path = "-", record_path, starts = "evaluation";
   MatrixPlan plan;
   plan.temperature = kTemperature;  // unless the method has another
   int threads = 0;
@@ -83,10 +83,16 @@ int body(int argc, char** argv) {
       .text(0, "record", "FILE",
             "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix",
             record_path)
+      .choice(0, "starts", "USE", "start states: evaluation, or training for records to learn from, without a matrix",
+              starts, {"evaluation", "training"})
       .text('o', "output", "FILE", "write the matrix to FILE", output_path)
       .flag(0, "describe", "print what the checkpoint says of itself, as JSON, and quit", describe)
       .quiet(quiet);
   options.parse(argc, argv);
+  const bool for_training = starts == "training";
+  if (for_training && record_path.empty()) fail(Exit::kUsage, "--starts training goes with --record");
+  if (for_training && options.given("output"))
+    fail(Exit::kUsage, "--starts training writes no matrix: -o does not go with it");
 
   const Checkpoint checkpoint = load_checkpoint(checkpoint_path);
   if (describe) {
@@ -96,10 +102,11 @@ int body(int argc, char** argv) {
   const std::unique_ptr<World> world = world_of(checkpoint, world_name);
   Model model = load_model(checkpoint, *world);
   if (!options.given("temperature")) plan.temperature = model.policy->temperature();
+  if (for_training) plan.use = kForTraining;
   plan.pairs_file = pairs_path;
   plan.pairs = pairs_path.empty() ? all_pairs(*world) : read_pairs(pairs_path);
 
-  Results results(output_path, options.given("output"), record_path);
+  Results results(output_path, options.given("output"), record_path, !for_training);
   catch_stop_signals();
   Parallel parallel(threads);
   Progress progress("synpo-eval", "episodes", plan.pairs.size() * size_t(plan.count), quiet);

@@ -53,6 +53,7 @@ int body(int argc, char** argv) {
   if (timed || (resumes && !counted)) s.updates = 0;
   if (resumes && !options.given("world")) s.world.clear();
   s.told = [&](int64_t total) { return concat(limit, " make ", total, " updates; -n ", total, " repeats this run"); };
+  s.on_tested_start = words;
 
   catch_stop_signals();
   Parallel parallel(s.threads);

@@ -6,23 +6,31 @@
 
 namespace synpo {
 
-// The use of a stream of random numbers; two purposes never share numbers.
+// The use of a stream of random numbers; two purposes never share numbers. The values decide what is drawn: a new
+// purpose goes to the end.
 enum class Purpose : uint32_t {
   kPairOrder = 1,
-  kEpisodeStart,
-  kNoise,
+  kEpisodeStart,  // of the expert's episodes
+  kNoise,         // in the expert's moves
   kSplit,
-  kInit,
+  kInit,  // first weights; of seeds of their own, plans and colours of kitchens too
   kBatch,
   kRollIn,
-  kEvaluation,
-  kEvaluationPairs,
+  kEvaluation,       // starts of synpo-eval's episodes; their moves are of kSample
+  kEvaluationPairs,  // of the evaluations within a run
   kBootstrap,
   kDropout,
   kOwnMove,
   kSample,
-  kActor,
-  kLayout
+  kActor,  // starts of PPO's episodes; their moves are of kActorMove
+  kLayout,
+  kRunEvaluation,  // starts of the evaluations within a run
+  kRunEvaluationMove,
+  kTrainingStart,  // of episodes that a policy plays to learn from
+  kTrainingMove,
+  kActorMove,
+  kStatisticsMove,
+  kRolloutOrder
 };
 
 class Random {

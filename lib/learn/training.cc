@@ -76,6 +76,7 @@ void Training::begin() {
 
 void Training::update(Progress& progress) {
   if (!run_->update(*stream_)) fail(Exit::kData, "standard input has no trajectory");
+  note_tested_start(progress);
   if (stream_->ended()) check_length();
   if (timed_ > 0 && run_->updates() == first_ + timed_) tell_total(progress);
 }
@@ -84,6 +85,13 @@ void Training::tell_total(Progress& progress) {
   const double elapsed_s = seconds_since(start_);
   run_->set_total_updates(first_ + std::max(timed_, int64_t(settings_.limit_s / elapsed_s * double(timed_))));
   if (first_ == 0 && settings_.told) progress.say(settings_.told(run_->total_updates()));
+}
+
+void Training::note_tested_start(Progress& progress) {
+  const bool learns_states = run_->options().batch_states == 0 || !run_->options().fresh_starts;
+  if (noted_tested_start_ || !learns_states || !stream_->tested_start() || !settings_.on_tested_start) return;
+  progress.warn(settings_.on_tested_start(*stream_->tested_start()));
+  noted_tested_start_ = true;
 }
 
 void Training::end() {

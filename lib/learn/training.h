@@ -26,6 +26,8 @@ struct TrainingSettings : LongRun {
   int64_t expect = 0;  // trajectories that the stream must have
   // What is said when a limit in time has been turned into a number of updates.
   std::function<std::string(int64_t total)> told = nullptr;
+  // What is said when the run learns from the starts that success matrices are made of.
+  std::function<std::string(const TestedStart&)> on_tested_start = nullptr;
 };
 
 // A run that was stopped while its limit in time was still unknown as a number of updates goes on without a limit.
@@ -55,6 +57,7 @@ class Training : public LongWork {
  private:
   void check_length();
   void tell_total(Progress& progress);
+  void note_tested_start(Progress& progress);
 
   const TrainingSettings& settings_;
   std::unique_ptr<World> world_;
@@ -64,6 +67,7 @@ class Training : public LongWork {
   // A limit in time is told in updates by the rate of the first `timed_` ones.
   int64_t first_ = 0, timed_ = 0;
   TimePoint start_;
+  bool noted_tested_start_ = false;
 };
 
 }  // namespace synpo

@@ -74,7 +74,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
       if (number < 0) return false;
       const EvalEpisode& job = episodes[size_t(number)];
       const EnvTask pair = pairs[size_t(job.pair)];
-      batch[place].start(pair, episode_start(world, pair, options.seed, Purpose::kEvaluation, job.number));
+      batch[place].start(pair, episode_start(world, pair, options.seed, options.use.starts, job.number));
       records[size_t(place)] = {pair, batch[place].now()};
       return true;
     };
@@ -90,7 +90,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
         RunningEpisode& episode = batch[place];
         const int number = numbers[size_t(place)];
         const int action = choose(scores, actions, options.temperature, [&] {
-          return Random(options.seed, Purpose::kSample, world.pair_number(episode.pair),
+          return Random(options.seed, options.use.moves, world.pair_number(episode.pair),
                         uint64_t(episodes[size_t(number)].number) << 16 | episode.now().steps)
               .uniform();
         });
@@ -119,7 +119,7 @@ Matrix success_matrix(Parallel& parallel, const World& world, Model& model, cons
   }
   model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
   const std::vector<Outcomes> results = evaluate(parallel, *model.policy, world, pairs, episodes,
-                                                 {plan.seed, model.window, plan.temperature}, sink, progress);
+                                                 {plan.seed, model.window, plan.temperature, plan.use}, sink, progress);
   Matrix matrix;
   for (size_t p = 0; p < pairs.size(); ++p) {
     const PairRow& pair = plan.pairs[p];
@@ -172,7 +172,7 @@ RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, co
     model.policy->prepare_inference(parallel, parameters, statistics, pairs);
     Outcomes sum;
     for (const Outcomes& result : evaluate(parallel, *model.policy, world, groups[seen], jobs,
-                                           {model.seed, model.window, model.policy->temperature()}))
+                                           {model.seed, model.window, model.policy->temperature(), kForRunLog}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;
     reward[seen] = sum.reward_cents / 100.0 / sum.episodes;

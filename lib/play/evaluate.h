@@ -14,16 +14,26 @@
 
 namespace synpo {
 
-// An episode to run: start state from (seed, kEvaluation, pair, number).
+// An episode to run: start state from (seed, the purpose of its starts, pair, number).
 struct EvalEpisode {
   int pair;  // position in the list of pairs
   int64_t number;
 };
 
+// What episodes are played for: each use has starts and moves of its own, so that none is tested on what another one
+// learned from or chose by.
+struct EpisodeUse {
+  Purpose starts, moves;
+};
+constexpr EpisodeUse kForMatrix = {Purpose::kEvaluation, Purpose::kSample};
+constexpr EpisodeUse kForRunLog = {Purpose::kRunEvaluation, Purpose::kRunEvaluationMove};
+constexpr EpisodeUse kForTraining = {Purpose::kTrainingStart, Purpose::kTrainingMove};
+
 struct EvalOptions {
   uint64_t seed = 1;
   int window = 1;
   double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
+  EpisodeUse use = kForMatrix;
 };
 
 // Called with every episode in the order of the list, one at a time, from any thread.
@@ -43,6 +53,7 @@ struct MatrixPlan {
   uint64_t seed = 1;
   double temperature = 0;
   std::string pairs_file = "";  // that names the pairs, for messages
+  EpisodeUse use = kForMatrix;
 };
 
 // The success matrix of a policy, a row for each pair in their order; `run` names its weights.
@@ -51,9 +62,9 @@ Matrix success_matrix(Parallel& parallel, const World& world, Model& model, cons
                       const std::function<void(size_t done)>& progress = nullptr);
 
 // Success and mean return, at the policy's own temperature, on `episodes` seen and as many unseen pairs drawn at
-// random, an episode each; the same ones at every call while no pair is seen that was not. Unseen are pairs of an
-// environment and a task that other seen pairs have. NaN where there are no such pairs. The weights are given apart: a
-// run may evaluate others than those it learns with.
+// random, an episode each (kForRunLog); the same ones at every call while no pair is seen that was not. Unseen are
+// pairs of an environment and a task that other seen pairs have. NaN where there are no such pairs. The weights are
+// given apart: a run may evaluate others than those it learns with.
 RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, const Model& model,
                                       const float* parameters, const float* statistics, int episodes);
 

@@ -3,6 +3,19 @@
 #include "base/error.h"
 
 namespace synpo {
+namespace {
+
+// A world may have so few starts that the expert, or a recording for training, comes upon a tested one by chance: these
+// are told by their own numbers.
+bool begins_as_tested(const World& world, const Trajectory& t, const Episode& episode) {
+  const auto begins_for = [&](Purpose purpose) {
+    return episode.start == episode_start(world, episode.pair, t.seed, purpose, t.episode);
+  };
+  return begins_for(Purpose::kEvaluation) && !begins_for(Purpose::kEpisodeStart) &&
+         !begins_for(Purpose::kTrainingStart);
+}
+
+}  // namespace
 
 TrajectoryStream::TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window)
     : input_(input), world_(world), seen_(std::move(seen)),
@@ -25,6 +38,8 @@ std::optional<Episode> TrajectoryStream::next() {
       fail(Exit::kData, "window ", trajectory.window, ", expected ", window_, " as in the trajectories before");
     ++lines_;
     hash_.add(line_).add("\n");
+    if (!tested_start_ && begins_as_tested(world_, trajectory, episode))
+      tested_start_ = {lines_, trajectory.seed, trajectory.episode};
     return episode;
   } catch (const Error& error) {
     input_.bad_line(error);

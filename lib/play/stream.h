@@ -10,6 +10,12 @@
 
 namespace synpo {
 
+// A line of a stream that begins where an episode of synpo-eval begins: what learns from it is not to be tested there.
+struct TestedStart {
+  uint64_t line, seed;
+  int64_t episode;
+};
+
 class TrajectoryStream {
  public:
   // Trajectories of pairs outside `seen` are refused (an empty list takes all). The window of the first is that of all;
@@ -27,6 +33,8 @@ class TrajectoryStream {
   uint64_t hash() const { return hash_.value(); }
   int window() const { return window_; }
   bool ended() const { return ended_; }
+  // The first line read so far that begins on a start of success matrices.
+  const std::optional<TestedStart>& tested_start() const { return tested_start_; }
 
  private:
   Input& input_;
@@ -35,6 +43,7 @@ class TrajectoryStream {
   std::vector<bool> allowed_;  // by pair number
   int window_;
   bool ended_ = false;
+  std::optional<TestedStart> tested_start_;
   uint64_t lines_ = 0;
   Hash hash_;
   std::string line_;

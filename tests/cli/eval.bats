@@ -141,3 +141,63 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     run -64 --separate-stderr synpo-eval --temperature -1 <a.ckpt
     run -64 --separate-stderr synpo-eval --temperature x <a.ckpt
 }
+
+@test "--starts training: episodes of their own starts and moves, to learn from and not to count" {
+    synpo-eval -q -p two.tsv -n 9 --record tested.jsonl <a.ckpt >counted
+    synpo-eval -q -p two.tsv -n 9 --starts evaluation --record - <a.ckpt | cmp - tested.jsonl
+    for j in 1 2; do synpo-eval -q -j $j -p two.tsv -n 9 --starts training --record r$j.jsonl <a.ckpt >matrix$j; done
+    cmp r1.jsonl r2.jsonl
+    [ ! -s matrix1 ]
+    [ "$(wc -l <r1.jsonl)" -eq 18 ]
+    synpo-eval -q -p two.tsv -n 9 --starts training --record - <a.ckpt | cmp - r1.jsonl
+    synpo-gen-expert -p two.tsv --per-pair 9 >expert.jsonl
+    for other in tested expert; do
+        paste -d '\n' <(jq -c .start r1.jsonl) <(jq -c .start $other.jsonl) | uniq -d >same
+        [ ! -s same ]
+    done
+    fails 64 synpo-eval --starts training -p two.tsv -n 9 -c a.ckpt
+    fails 64 synpo-eval --starts training --record r -o m -p two.tsv -n 9 -c a.ckpt
+    fails 64 synpo-eval --starts test --record r -c a.ckpt
+    says "expected evaluation or training"
+}
+
+@test "who learns from the starts that evaluations count is warned; DAgger's recipe is not" {
+    printf 'env\ttask\nmap5\tR-B\nmap1\tP-O\n' >new.tsv
+    for use in evaluation training; do
+        synpo-eval -q -p two.tsv -s 3 -n 9 --starts $use --record $use.jsonl <a.ckpt >matrix
+        synpo-eval -q -p new.tsv -s 3 -n 9 --starts $use --record new-$use.jsonl <a.ckpt >matrix
+    done
+    cat e.jsonl evaluation.jsonl >mixed.jsonl
+    learn() { synpo-train "${TINY[@]}" -n 1 --init a.ckpt "$@" 2>err >b.ckpt; }
+    learn --no-fresh-starts <evaluation.jsonl
+    grep -q '^synpo-train: warning: line 1 begins where episode 0 of synpo-eval -s 3 begins: .*--starts training' err
+    [ "$(wc -l <err)" -eq 1 ]
+    learn --no-fresh-starts --fill 78 <mixed.jsonl
+    grep -q 'warning: line 61 begins' err
+    synpo-train "${TINY_PAPER[@]}" -n 1 <evaluation.jsonl 2>err >b.ckpt
+    grep -q 'warning: line 1 begins' err
+    synpo-finetune adapt -q -c a.ckpt -n 1 <new-evaluation.jsonl 2>err >b.ckpt
+    grep -q '^synpo-finetune: warning: line 1 begins' err || grep -q '^synpo-finetune adapt: warning: line 1 begins' err
+    # With fresh starts the stream gives the pairs alone.
+    learn <evaluation.jsonl
+    [ ! -s err ]
+    learn --no-fresh-starts <training.jsonl
+    [ ! -s err ]
+    learn --no-fresh-starts <e.jsonl
+    [ ! -s err ]
+    synpo-train "${TINY_PAPER[@]}" -n 1 <training.jsonl 2>err >b.ckpt
+    [ ! -s err ]
+    synpo-finetune adapt -q -c a.ckpt -n 1 <new-training.jsonl 2>err >b.ckpt
+    [ ! -s err ]
+}
+
+@test "the starts of a training's own evaluations are none of synpo-eval's" {
+    # The same policy, seed and pairs: with the same episodes both would find the same rewards.
+    awk 'NR == 1 || $3 == 1' pairs.tsv | head -n 2 >one.tsv
+    synpo-gen-expert -p one.tsv -n 20 >one.jsonl
+    synpo-train "${TINY[@]}" -n 1 -p one.tsv -s 1 --evaluate-every 1 --evaluate-episodes 40 --log log <one.jsonl >one.ckpt
+    synpo-eval -q -p one.tsv -s 1 -n 40 <one.ckpt >matrix
+    log=$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { printf "%.4f", 40 * $at["seen_reward"] }' log)
+    tested=$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { printf "%.4f", $at["reward"] }' matrix)
+    [ "$log" != "$tested" ] || complain "both earn $log"
+}

@@ -1,6 +1,7 @@
 // Demonstrations on stdin, an adapted checkpoint on stdout.
 #include <stdexcept>
 
+#include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
@@ -97,6 +98,7 @@ int adapt(int argc, char** argv) {
   while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
   if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
   Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
+  if (stream.tested_start()) progress.warn(words(*stream.tested_start()));
   progress.say(concat(adapted.demonstrations(), " demonstrations, ", adapted.new_envs(), " new environments, ",
                       adapted.new_tasks(), " new tasks"));
   for (int64_t i = 0; i < updates; ++i) {

@@ -48,7 +48,12 @@ void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {
 }
 
 void Progress::say(const std::string& text) {
-  if (quiet_) return;
+  if (!quiet_) line(text);
+}
+
+void Progress::warn(const std::string& text) { line("warning: " + text); }
+
+void Progress::line(const std::string& text) {
   std::fprintf(stderr, "%s%s: %s\n", open_ ? "\r\033[K" : "", tool_.c_str(), text.c_str());
   open_ = false;
 }

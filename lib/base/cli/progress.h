@@ -17,11 +17,14 @@ class Progress {
   void update(uint64_t done, const std::string& note = "");
   // A line of its own, "tool: text".
   void say(const std::string& text);
+  // The same, "tool: warning: text", which quiet does not silence.
+  void warn(const std::string& text);
   // Ends the bar's line, if one is shown.
   void finish();
 
  private:
   void show(uint64_t done, const std::string& note, double elapsed_s);
+  void line(const std::string& text);
   std::string tool_, unit_;
   uint64_t total_, first_;
   bool quiet_, terminal_, open_ = false;

@@ -114,7 +114,7 @@ void Ppo::measure_statistics(int batches) {
     std::vector<uint8_t> observations(n * world_.observation_size());
     std::vector<int> env(n), task(n), action(n);
     const std::vector<float> reward(n, 0);
-    Random random(seed_, Purpose::kNoise, 0, uint64_t(batch));
+    Random random(seed_, Purpose::kStatisticsMove, 0, uint64_t(batch));
     for (int i = 0; i < n; ++i) {
       const int actor = i % actors_.count();
       const RunningEpisode& episode = actors_.episodes()[actor];
@@ -190,8 +190,9 @@ void Ppo::collect() {
       const EnvTask pair = actors_.episodes()[actor].pair;
       const float* scores = logits.data() + size_t(actor) * actions;
       const double log_sum = softmax(scores, actions, 1, p.data());
-      const int action = draw(p.data(), actions,
-                              Random(seed_, Purpose::kSample, uint64_t(actor), uint64_t(steps_ / count + t)).uniform());
+      const int action =
+          draw(p.data(), actions,
+               Random(seed_, Purpose::kActorMove, uint64_t(actor), uint64_t(steps_ / count + t)).uniform());
       r.env[at] = pair.env;
       r.task[at] = pair.task;
       r.action[at] = action;
@@ -273,7 +274,7 @@ void Ppo::update() {
   std::vector<int> order(size());
   for (int epoch = 0; epoch < options_.epochs; ++epoch) {
     std::iota(order.begin(), order.end(), 0);
-    Random random(seed_, Purpose::kBatch, uint64_t(epoch), uint64_t(updates_));
+    Random random(seed_, Purpose::kRolloutOrder, uint64_t(epoch), uint64_t(updates_));
     for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
     const int rows = size() / options_.minibatches;
     for (int m = 0; m < options_.minibatches; ++m) {

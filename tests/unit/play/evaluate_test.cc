@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "base/hash.h"
 #include "helpers/episodes.h"
@@ -212,6 +215,31 @@ TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
     EXPECT_GT(got[p].wrong, 5);
   }
   EXPECT_GT(first_picks, 2);
+}
+
+TEST(Evaluate, EpisodesOfOtherUsesStartAndMoveInTheirOwnWay) {
+  Parallel parallel(2);
+  FunctionPolicy policy(uneven);
+  std::map<Purpose, std::vector<std::string>> starts, moves;
+  for (const EpisodeUse& use : {kForMatrix, kForRunLog, kForTraining}) {
+    EvalOptions options;
+    options.temperature = 1;
+    options.use = use;
+    evaluate(parallel, policy, builtin_world(), kPairs, episodes_of(0, 10), options, [&](const Trajectory& t) {
+      const EnvTask pair = {builtin_world().env_index(t.env), builtin_world().task_index(t.task)};
+      EXPECT_EQ(replay(builtin_world(), t).start,
+                episode_start(builtin_world(), pair, options.seed, use.starts, t.episode));
+      std::string places;
+      for (const auto& [thing, place] : t.start) places += concat(thing, place.first, ',', place.second, ' ');
+      starts[use.starts].push_back(places);
+      moves[use.starts].emplace_back(t.actions.begin(), t.actions.end());
+    });
+  }
+  EXPECT_EQ(starts.size(), 3u);
+  for (const auto& list : {starts, moves})
+    for (const auto& [a, of_a] : list)
+      for (const auto& [b, of_b] : list)
+        for (size_t i = 0; a != b && i < of_a.size(); ++i) EXPECT_NE(of_a[i], of_b[i]);
 }
 
 TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
