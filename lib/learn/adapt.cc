@@ -1,14 +1,17 @@
 #include "learn/adapt.h"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "base/take_rows.h"
 #include "learn/finite.h"
 #include "nn/init.h"
+#include "nn/layout.h"
 #include "play/running_episode.h"
 #include "policy/method/registry.h"
+#include "policy/policy.h"
 
 namespace synpo {
 namespace {

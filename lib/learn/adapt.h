@@ -4,6 +4,8 @@
 // New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi,
 // and where embeddings alone are learned, all that the method's EmbeddingLoss keeps.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>
@@ -11,8 +13,14 @@
 
 #include "base/error.h"
 #include "base/parallel.h"
+#include "format/checkpoint.h"
 #include "nn/adam.h"
+#include "nn/buffer.h"
+#include "play/episode.h"
 #include "play/model.h"
+#include "policy/embedding_loss.h"
+#include "policy/losses.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -1,13 +1,20 @@
 #include "learn/imitate.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <utility>
 
 #include "base/error.h"
+#include "format/safetensors.h"
 #include "learn/finite.h"
 #include "nn/adam.h"
+#include "nn/layout.h"
 #include "nn/loss.h"
+#include "play/episode.h"
 #include "play/evaluate.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 namespace {

@@ -1,14 +1,22 @@
 // Imitation learning (Algorithm 1): a stream of expert trajectories in, a trained model out.
 #pragma once
-#include <optional>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "base/hash.h"
 #include "base/parallel.h"
+#include "format/checkpoint.h"
 #include "format/run_log.h"
+#include "learn/memory.h"
 #include "learn/recipe.h"
+#include "learn/steps.h"
+#include "nn/buffer.h"
 #include "play/model.h"
 #include "play/stream.h"
+#include "policy/losses.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -1,6 +1,7 @@
 #include "learn/memory.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 

@@ -1,9 +1,13 @@
 // The replay memory: the last `capacity` trajectories of the stream.
 #pragma once
+#include <cstddef>
+#include <cstdint>
+#include <string>
 #include <vector>
 
 #include "format/safetensors.h"
 #include "play/episode.h"
+#include "world/world.h"
 
 namespace synpo {
 

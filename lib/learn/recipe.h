@@ -1,5 +1,6 @@
 // The hyper-parameters of imitation learning, by name: for the command line, for the checkpoint, and as presets.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 
@@ -8,6 +9,8 @@
 #include "nn/adam.h"
 #include "policy/policy.h"
 #include "policy/policy_shape.h"
+#include "world/observation.h"
+#include "world/world.h"
 
 namespace synpo {
 

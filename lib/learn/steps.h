@@ -6,13 +6,19 @@
 // own greedy moves, where the planner then gives the label. Steps on which something could be taken (World::at_choice)
 // are always taken, others with a probability.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "format/safetensors.h"
 #include "learn/memory.h"
+#include "play/episode.h"
 #include "play/episode_batch.h"
+#include "play/running_episode.h"
 #include "policy/policy.h"
+#include "world/world.h"
 
 namespace synpo {
 

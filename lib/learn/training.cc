@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
+#include "play/episode.h"
+#include "play/model.h"
 #include "play/world_factory.h"
 
 namespace synpo {

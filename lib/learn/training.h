@@ -1,14 +1,24 @@
 // A training by imitation from its settings to its end: where it begins, how long it lasts, its stream, its reports.
 #pragma once
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "base/cli/progress.h"
+#include "base/clock.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "base/parallel.h"
+#include "format/checkpoint.h"
+#include "format/run_log.h"
 #include "learn/imitate.h"
 #include "learn/long_run.h"
 #include "learn/recipe.h"
+#include "play/stream.h"
+#include "world/world.h"
 
 namespace synpo {
 

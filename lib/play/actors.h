@@ -1,12 +1,15 @@
 // The actors of PPO: each plays episodes of some pairs, drawn at random, one after the other, by the learner's own
 // actions.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "format/safetensors.h"
 #include "play/episode_batch.h"
+#include "play/running_episode.h"
+#include "world/world.h"
 
 namespace synpo {
 

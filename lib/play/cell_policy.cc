@@ -1,7 +1,8 @@
 #include "play/cell_policy.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "nn/softmax.h"
 

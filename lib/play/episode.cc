@@ -1,8 +1,10 @@
 #include "play/episode.h"
 
 #include <cstdio>
+#include <utility>
 
 #include "base/error.h"
+#include "base/files/io.h"
 
 namespace synpo {
 namespace {

@@ -1,9 +1,11 @@
 // Episodes between their file form (format/trajectory.h) and the world's.
 #pragma once
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "format/pairs.h"
 #include "format/trajectory.h"
 #include "world/world.h"

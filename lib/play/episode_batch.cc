@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "world/observation.h"
+
 namespace synpo {
 namespace {
 

@@ -2,6 +2,7 @@
 // actors play, and those that imitation draws single steps from. Who acts, and what starts where one has ended, is
 // their owner's to say.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "format/safetensors.h"
 #include "play/running_episode.h"
+#include "world/world.h"
 
 namespace synpo {
 

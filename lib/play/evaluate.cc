@@ -5,11 +5,15 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <utility>
 
 #include "base/error.h"
 #include "base/hash.h"
+#include "base/random.h"
+#include "nn/buffer.h"
 #include "nn/loss.h"
 #include "nn/softmax.h"
+#include "play/episode.h"
 #include "play/episode_batch.h"
 
 namespace synpo {

@@ -1,5 +1,7 @@
 // Success of a policy on pairs, every episode run to its own end.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
@@ -11,6 +13,8 @@
 #include "format/trajectory.h"
 #include "play/model.h"
 #include "play/running_episode.h"
+#include "policy/policy.h"
+#include "world/world.h"
 
 namespace synpo {
 

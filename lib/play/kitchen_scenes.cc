@@ -3,13 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
+#include <system_error>
 #include <unordered_map>
+#include <utility>
 
 #include "base/error.h"
+#include "base/files/io.h"
 #include "base/half.h"
 #include "base/hash.h"
+#include "base/random.h"
 #include "base/text.h"
-#include "world/grid/maze.h"
+#include "world/kitchen/geometry/tables.h"
+#include "world/kitchen/rules.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 namespace {

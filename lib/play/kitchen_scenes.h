@@ -9,8 +9,11 @@
 
 #include "base/parallel.h"
 #include "format/scene.h"
+#include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/geometry/ray.h"
 #include "world/kitchen/kitchen_set.h"
 #include "world/kitchen/recorded_kitchens.h"
+#include "world/kitchen/view/view.h"
 
 namespace synpo {
 

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "base/error.h"
-#include "base/text.h"
+#include "format/pairs.h"
+#include "play/episode.h"
 #include "play/world_factory.h"
 #include "policy/method/registry.h"
+#include "world/observation.h"
 
 namespace synpo {
 

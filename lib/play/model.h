@@ -1,14 +1,18 @@
 // A policy together with its weights and the world it was made for: what a checkpoint holds.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
 #include "format/checkpoint.h"
+#include "format/safetensors.h"
 #include "nn/buffer.h"
+#include "nn/layout.h"
 #include "play/episode.h"
 #include "policy/policy.h"
+#include "policy/policy_shape.h"
 #include "world/world.h"
 
 namespace synpo {

@@ -1,6 +1,10 @@
 #include "play/stream.h"
 
+#include <cstddef>
+#include <utility>
+
 #include "base/error.h"
+#include "format/trajectory.h"
 
 namespace synpo {
 namespace {

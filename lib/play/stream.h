@@ -1,5 +1,6 @@
 // The stream of trajectories that a trainer reads: parsed, replayed, compared with the seen set, hashed.
 #pragma once
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,7 @@
 #include "base/files/io.h"
 #include "base/hash.h"
 #include "play/episode.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -1,13 +1,18 @@
 #include "play/world_factory.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/text.h"
 #include "play/kitchen_scenes.h"
 #include "world/grid/grid_set.h"
+#include "world/grid/maze.h"
+#include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/recorded_kitchens.h"
 
 namespace synpo {
 namespace {

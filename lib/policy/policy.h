@@ -1,6 +1,7 @@
 // The face that every method shows to the learner and the evaluator: parameters in one flat array, a training step, and
 // inference.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -11,7 +12,6 @@
 #include "nn/layout.h"
 #include "policy/embedding_loss.h"
 #include "policy/losses.h"
-#include "policy/policy_shape.h"
 
 namespace synpo {
 

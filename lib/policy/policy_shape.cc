@@ -1,5 +1,6 @@
 #include "policy/policy_shape.h"
 
+#include <cstddef>
 #include <utility>
 
 #include "base/error.h"

@@ -1,5 +1,7 @@
 #include "learn/ppo/gae.h"
 
+#include <cstddef>
+
 namespace synpo {
 
 std::vector<float> advantages(const GaeInput& input, const GaeOptions& options) {

@@ -1,6 +1,5 @@
 // Generalised advantage estimation (Schulman et al. 2016), for worlds that run side by side.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

@@ -2,13 +2,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "base/error.h"
+#include "base/random.h"
 #include "base/take_rows.h"
+#include "format/safetensors.h"
 #include "learn/finite.h"
+#include "nn/init.h"
+#include "nn/rmsprop.h"
 #include "nn/softmax.h"
+#include "play/episode_batch.h"
+#include "policy/losses.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 namespace {

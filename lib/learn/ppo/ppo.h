@@ -8,17 +8,22 @@
 // first minibatch after a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient
 // reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
 #pragma once
+#include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "base/parallel.h"
+#include "format/checkpoint.h"
 #include "learn/ppo/clipped_objective.h"
 #include "learn/ppo/gae.h"
 #include "learn/ppo/ppo_options.h"
+#include "nn/buffer.h"
 #include "nn/layers/perceptron.h"
+#include "nn/layout.h"
 #include "play/actors.h"
 #include "play/model.h"
+#include "play/running_episode.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -1,6 +1,7 @@
 #include "learn/ppo/ppo_options.h"
 
 #include <climits>
+#include <cstdint>
 #include <variant>
 #include <vector>
 

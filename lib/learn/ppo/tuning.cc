@@ -1,10 +1,15 @@
 #include "learn/ppo/tuning.h"
 
 #include <cmath>
+#include <utility>
 
 #include "base/error.h"
+#include "format/run_log.h"
 #include "learn/recipe.h"
+#include "nn/buffer.h"
+#include "play/episode.h"
 #include "play/evaluate.h"
+#include "play/model.h"
 #include "play/world_factory.h"
 
 namespace synpo {

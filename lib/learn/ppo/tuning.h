@@ -1,13 +1,20 @@
 // Fine-tuning by PPO from its settings to its end: where it begins, how long it lasts, its reports.
 #pragma once
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "base/cli/options.h"
+#include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/parallel.h"
+#include "format/checkpoint.h"
 #include "learn/long_run.h"
 #include "learn/ppo/ppo.h"
+#include "learn/ppo/ppo_options.h"
+#include "world/world.h"
 
 namespace synpo {
 

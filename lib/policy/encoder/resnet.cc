@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <string>
+#include <utility>
 
 #include "nn/init.h"
 #include "nn/layers/dense.h"
+#include "nn/layers/norm.h"
 
 namespace synpo {
 namespace {

@@ -3,10 +3,15 @@
 // Four stages of two basic blocks (3x3 conv, norm, ReLU, 3x3 conv, norm, plus the shortcut, ReLU), first strides 2 2 2
 // 1, then a dense layer. A 1x1 convolution with normalisation stands on a shortcut that changes shape.
 #pragma once
-#include <memory>
-#include <string>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "base/parallel.h"
+#include "base/rgb.h"
+#include "kernel/kernels.h"
+#include "nn/buffer.h"
+#include "nn/gemm.h"
 #include "nn/layers/residual_block.h"
 #include "nn/layout.h"
 #include "policy/encoder/encoder.h"

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "nn/init.h"
 #include "nn/layers/dense.h"
 
 namespace synpo {

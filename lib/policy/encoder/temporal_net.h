@@ -4,9 +4,13 @@
 // comes the embedding of the object in the hand, and a perceptron: 1056 -> 2048 ReLU -> 256. A padded view is zero,
 // so of the taps of the first convolution five are multiplied, and of the second one's two: its first never is.
 #pragma once
-#include <string>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
+#include "base/parallel.h"
+#include "kernel/kernels.h"
+#include "nn/buffer.h"
 #include "nn/gemm.h"
 #include "nn/layers/perceptron.h"
 #include "nn/layout.h"

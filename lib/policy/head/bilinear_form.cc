@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "kernel/kernels.h"
+
 namespace synpo {
 namespace {
 constexpr int kRows = 64;  // of a shard

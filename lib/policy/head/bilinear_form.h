@@ -5,6 +5,7 @@
 // and learned phi [A, D]. W costs D d K once a pair, and a state then D d + A D. In both, `columns` is the first extent
 // of theta.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "base/parallel.h"

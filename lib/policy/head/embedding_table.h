@@ -1,6 +1,7 @@
 // Learned embeddings e_env or e_task, one row each.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <vector>
 

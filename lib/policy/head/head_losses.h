@@ -1,6 +1,7 @@
 // The losses of a policy's heads, over the rows of a batch.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 #include "base/parallel.h"

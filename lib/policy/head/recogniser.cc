@@ -1,7 +1,9 @@
 #include "policy/head/recogniser.h"
 
+#include <cstddef>
 #include <vector>
 
+#include "kernel/kernels.h"
 #include "nn/gemm.h"
 #include "nn/loss.h"
 

@@ -3,7 +3,11 @@
 #pragma once
 #include <string>
 
+#include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/init.h"
 #include "nn/layers/perceptron.h"
+#include "nn/layout.h"
 #include "policy/head/embedding_table.h"
 
 namespace synpo {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 
+#include "nn/layout.h"
 #include "policy/encoder/resnet.h"
 #include "policy/encoder/temporal_net.h"
 #include "policy/head/head_losses.h"
+#include "world/observation.h"
 
 namespace synpo {
 namespace {

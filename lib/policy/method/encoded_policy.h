@@ -1,13 +1,18 @@
 // All methods share this: first an encoder, which gives psi(s), then a head, which is the method's own.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
 #include "nn/buffer.h"
 #include "nn/init.h"
 #include "policy/encoder/encoder.h"
+#include "policy/losses.h"
 #include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 

@@ -1,6 +1,7 @@
 #include "policy/method/mlp.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "nn/unit_norm.h"
 #include "policy/head/head_losses.h"

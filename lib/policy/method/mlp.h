@@ -3,10 +3,19 @@
 //   x = [psi / |psi|, e_env, e_task];  scores of the actions and their rewards each by a perceptron over x.
 //   The environment is recognised by f_env(psi / |psi|)^T e_env, the task from f_task(psi / |psi|)^T e_task.
 #pragma once
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/init.h"
 #include "nn/layers/perceptron.h"
 #include "policy/head/embedding_table.h"
 #include "policy/head/recogniser.h"
+#include "policy/losses.h"
 #include "policy/method/encoded_policy.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 

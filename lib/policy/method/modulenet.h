@@ -5,9 +5,18 @@
 //   of the environment's.
 // It has the imitation loss alone. Samples of a batch are grouped by module.
 #pragma once
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/init.h"
 #include "nn/layers/perceptron.h"
 #include "policy/head/groups.h"
+#include "policy/losses.h"
 #include "policy/method/encoded_policy.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 

@@ -1,6 +1,7 @@
 // The multi-task baseline: SynPo without the environment's embedding and loss. Coefficients come from e_task alone.
 #pragma once
 #include "policy/method/synpo.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 

@@ -1,10 +1,14 @@
 #include "policy/method/registry.h"
 
 #include <algorithm>
+#include <ranges>
 #include <type_traits>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text.h"
+#include "nn/layers/perceptron.h"
+#include "policy/head/embedding_table.h"
 #include "policy/method/mlp.h"
 #include "policy/method/modulenet.h"
 #include "policy/method/mtl.h"

@@ -6,9 +6,18 @@
 // state and the expert's action there. The policy takes the action of the highest Q. SfLoss says how sigma is learned.
 // Checkpoints call the tensors of sigma "psi", as the literature on successor features does.
 #pragma once
+#include <utility>
+#include <vector>
+
+#include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/init.h"
 #include "nn/layers/perceptron.h"
 #include "policy/head/embedding_table.h"
+#include "policy/losses.h"
 #include "policy/method/encoded_policy.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 

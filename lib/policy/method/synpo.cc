@@ -4,6 +4,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "kernel/kernels.h"
 #include "nn/gemm.h"
 #include "policy/method/synpo_embedding_loss.h"
 

@@ -9,14 +9,25 @@
 // bilinear_form.h. The multi-task baseline (MTL) is the same without the environment: z = task, and the environment's
 // loss and embeddings are left out.
 #pragma once
+#include <cstddef>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "base/parallel.h"
+#include "nn/buffer.h"
+#include "nn/init.h"
+#include "nn/layers/perceptron.h"
+#include "policy/embedding_loss.h"
 #include "policy/head/bilinear_form.h"
+#include "policy/head/embedding_table.h"
 #include "policy/head/groups.h"
 #include "policy/head/recogniser.h"
+#include "policy/losses.h"
 #include "policy/method/encoded_policy.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "kernel/kernels.h"
 #include "nn/loss.h"
 #include "policy/head/bilinear_form.h"
+#include "world/world.h"
 
 namespace synpo {
 namespace {

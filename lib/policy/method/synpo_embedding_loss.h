@@ -5,16 +5,22 @@
 //   alpha(z) and beta(z) of the pairs drawn,   logits_a = alpha^T x(s, a) + b_a,   r = beta^T x(s, a) + c_a,
 // and f(x)^T e of the new e. An episode that is drawn several times is computed once, and weighs so many times as much.
 #pragma once
+#include <cstddef>
 #include <vector>
 
 #include "base/parallel.h"
 #include "nn/buffer.h"
 #include "nn/gemm.h"
 #include "nn/layers/frozen_perceptron.h"
+#include "nn/layers/perceptron.h"
 #include "policy/embedding_loss.h"
 #include "policy/head/embedding_table.h"
 #include "policy/head/groups.h"
+#include "policy/head/recogniser.h"
+#include "policy/losses.h"
 #include "policy/method/synpo.h"
+#include "policy/policy.h"
+#include "policy/policy_shape.h"
 
 namespace synpo {
 
