@@ -4,9 +4,7 @@
 
 #include "base/cli/options.h"
 #include "base/error.h"
-#include "learn/adapt.h"
 #include "learn/finite.h"
-#include "learn/imitate.h"
 #include "play/episode.h"
 #include "play/model.h"
 #include "play/stream.h"

@@ -3,17 +3,26 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/files/io.h"
 #include "base/files/side_output.h"
 #include "base/hash.h"
+#include "base/parallel.h"
 #include "base/signals.h"
+#include "format/checkpoint.h"
 #include "format/matrix.h"
+#include "format/pairs.h"
+#include "format/trajectory.h"
+#include "play/episode.h"
 #include "play/evaluate.h"
 #include "play/model.h"
+#include "policy/policy.h"
+#include "world/world.h"
 
 using namespace synpo;
 

@@ -3,6 +3,7 @@
 
 #include "advice.h"
 #include "base/cli/options.h"
+#include "learn/adapt.h"
 #include "learn/ppo/tuning.h"
 
 using namespace synpo;

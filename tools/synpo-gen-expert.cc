@@ -1,4 +1,8 @@
 // Expert trajectories, and expert labels for anyone's trajectories, as JSON Lines on stdout.
+#include <cstdint>
+#include <memory>
+#include <string>
+
 #include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
@@ -6,8 +10,10 @@
 #include "base/files/io.h"
 #include "base/signals.h"
 #include "base/text.h"
+#include "format/trajectory.h"
 #include "play/episode.h"
 #include "play/world_factory.h"
+#include "world/world.h"
 
 using namespace synpo;
 

@@ -3,8 +3,14 @@
 #include "matrix/matrix.h"
 
 #include <cstdio>
+#include <string>
+#include <vector>
 
+#include "base/cli/options.h"
+#include "base/files/io.h"
+#include "format/matrix.h"
 #include "stats/matrix/heat_table.h"
+#include "stats/matrix/merge.h"
 #include "stats/matrix/split.h"
 #include "stats/report/compare.h"
 #include "stats/report/summary.h"

@@ -1,16 +1,30 @@
 // synpo-render: matrices, curves, mazes, kitchens, views, episodes, embeddings and policies as PNG pictures.
 #include "render/render.h"
 
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "advice.h"
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "base/random.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/episode/agent_view.h"
+#include "draw/face/film.h"
+#include "draw/face/world_face.h"
+#include "draw/map_style.h"
 #include "draw/plot/curves.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
 #include "stats/matrix/heat_table.h"
 #include "world/grid/maze.h"
+#include "world/world.h"
 
 using namespace synpo;
 

@@ -1,14 +1,19 @@
 // Imitation learning: expert trajectories on stdin, a checkpoint on stdout.
 #include <sys/resource.h>
 
+#include <cstdint>
 #include <cstdio>
+#include <string>
 
 #include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/signals.h"
 #include "base/text.h"
+#include "learn/imitate.h"
+#include "learn/recipe.h"
 #include "learn/training.h"
 #include "play/world_factory.h"
 #include "policy/method/registry.h"

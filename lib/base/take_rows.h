@@ -1,6 +1,7 @@
 // Some rows of an array.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 #include <vector>
 
 namespace synpo {

@@ -10,7 +10,6 @@
 #include "format/safetensors.h"
 #include "nn/buffer.h"
 #include "nn/layout.h"
-#include "play/episode.h"
 #include "policy/policy.h"
 #include "policy/policy_shape.h"
 #include "world/world.h"

@@ -1,16 +1,28 @@
 // Demonstrations on stdin, an adapted checkpoint on stdout.
+#include <cstdint>
+#include <memory>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "advice.h"
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "base/parallel.h"
 #include "base/signals.h"
 #include "base/text.h"
 #include "finetune/finetune.h"
+#include "format/checkpoint.h"
 #include "learn/adapt.h"
+#include "play/episode.h"
+#include "play/model.h"
 #include "play/stream.h"
 #include "play/world_factory.h"
+#include "policy/losses.h"
+#include "world/world.h"
 
 using namespace synpo;
 

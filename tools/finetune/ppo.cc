@@ -1,9 +1,14 @@
 // A checkpoint on stdin, fine-tuned by PPO, a checkpoint on stdout.
+#include <cstdint>
+#include <string>
+
 #include "base/cli/options.h"
 #include "base/error.h"
+#include "base/parallel.h"
 #include "base/signals.h"
 #include "base/text.h"
 #include "finetune/finetune.h"
+#include "learn/ppo/ppo_options.h"
 #include "learn/ppo/tuning.h"
 #include "play/world_factory.h"
 

@@ -1,5 +1,6 @@
 // synpo-matrix compare: two methods, or two trainings of one, pair by pair.
 #include "stats/report/compare.h"
+#include "base/cli/options.h"
 #include "base/error.h"
 #include "matrix/matrix.h"
 

@@ -1,14 +1,20 @@
 // synpo-matrix filter: some of the rows.
+#include <cstdint>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
 #include "base/text.h"
+#include "format/matrix.h"
 #include "format/pairs.h"
 #include "matrix/matrix.h"
 #include "stats/matrix/filter.h"
+#include "stats/matrix/merge.h"
 #include "stats/matrix/split.h"
 
 namespace synpo {

@@ -1,6 +1,8 @@
 // synpo-matrix rows and cols: tasks and environments, the worst first.
 #include "stats/report/margins.h"
+#include "base/cli/options.h"
 #include "matrix/matrix.h"
+#include "stats/matrix/merge.h"
 
 namespace synpo {
 namespace {

@@ -1,11 +1,5 @@
 // The commands of synpo-matrix, and what they share.
 #pragma once
-#include <string>
-#include <vector>
-
-#include "base/cli/options.h"
-#include "base/files/io.h"
-#include "stats/matrix/merge.h"
 
 namespace synpo {
 

@@ -1,8 +1,15 @@
 // synpo-matrix show: the matrix in the terminal.
 #include <algorithm>
+#include <string>
 
+#include "base/cli/options.h"
+#include "base/files/io.h"
+#include "draw/colour.h"
 #include "draw/terminal/terminal.h"
+#include "format/matrix.h"
 #include "matrix/matrix.h"
+#include "stats/matrix/heat_table.h"
+#include "stats/matrix/merge.h"
 #include "world/grid/task.h"
 
 namespace synpo {

@@ -1,13 +1,21 @@
 // synpo-matrix split: draws which pairs of environments and tasks training sees.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
 #include "base/text.h"
 #include "format/pairs.h"
 #include "matrix/matrix.h"
 #include "play/world_factory.h"
 #include "stats/matrix/split.h"
+#include "world/world.h"
 
 namespace synpo {
 namespace {

@@ -1,11 +1,19 @@
 // synpo-matrix table: methods against seen and unseen pairs, with means and standard deviations over runs.
 #include <optional>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
-#include "base/error.h"
+#include "base/cli/options.h"
+#include "base/files/io.h"
+#include "format/matrix.h"
 #include "matrix/matrix.h"
+#include "stats/bootstrap.h"
+#include "stats/matrix/merge.h"
+#include "stats/matrix/runs.h"
 #include "stats/matrix/split.h"
 #include "stats/report/method_table.h"
+#include "stats/report/text_table.h"
 
 namespace synpo {
 

@@ -1,9 +1,14 @@
 // synpo-matrix wide: the matrix laid out for other programs.
 #include <stdexcept>
+#include <string>
 
-#include "draw/plot/heatmap.h"
+#include "base/cli/options.h"
+#include "base/files/io.h"
+#include "format/matrix.h"
 #include "matrix/matrix.h"
 #include "stats/matrix/filter.h"
+#include "stats/matrix/heat_table.h"
+#include "stats/matrix/merge.h"
 
 namespace synpo {
 

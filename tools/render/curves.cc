@@ -1,11 +1,18 @@
 // synpo-render curves: run logs as learning curves.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
 
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "draw/canvas/font.h"
 #include "draw/plot/curves.h"
 #include "format/run_log.h"
 #include "render/render.h"
+#include "stats/curve.h"
 
 using namespace synpo;
 

@@ -1,12 +1,27 @@
 // synpo-render embedding: where a checkpoint's environments and tasks lie in their embedding spaces.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
 
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "draw/canvas/font.h"
+#include "draw/canvas/key.h"
+#include "draw/face/world_face.h"
 #include "draw/plot/embedding_picture.h"
 #include "draw/worlds/faces.h"
+#include "format/checkpoint.h"
+#include "nn/buffer.h"
+#include "nn/layout.h"
 #include "play/model.h"
+#include "policy/policy.h"
 #include "render/render.h"
+#include "stats/distance.h"
+#include "world/world.h"
 
 using namespace synpo;
 

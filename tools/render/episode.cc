@@ -1,18 +1,28 @@
 // synpo-render episode: a trajectory as a path through its maze or kitchen, and what the agent saw on the way.
-#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "base/cli/options.h"
 #include "base/error.h"
 #include "base/files/folder.h"
+#include "base/files/io.h"
 #include "base/signals.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/video.h"
 #include "draw/episode/episode_picture.h"
+#include "draw/face/film.h"
+#include "draw/face/world_face.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
+#include "play/episode.h"
 #include "play/stream.h"
 #include "render/render.h"
+#include "world/world.h"
 
 using namespace synpo;
 

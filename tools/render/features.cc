@@ -1,14 +1,28 @@
 // synpo-render features: scene files of the built-in kitchens, their views seen by a feature network.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <system_error>
+#include <vector>
 
+#include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "base/parallel.h"
 #include "base/signals.h"
 #include "draw/vision/feature_net.h"
+#include "format/scene.h"
 #include "play/kitchen_scenes.h"
 #include "render/render.h"
 #include "stats/matrix/split.h"
+#include "world/kitchen/geometry/ray.h"
+#include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/view/features.h"
+#include "world/kitchen/view/view.h"
+#include "world/world.h"
 
 using namespace synpo;
 

@@ -1,7 +1,11 @@
 // Operands that name files and label them.
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "base/error.h"
 #include "base/text.h"

@@ -1,10 +1,19 @@
 // synpo-render heatmap: success matrices, one or several side by side.
 #include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
 
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "draw/canvas/font.h"
+#include "draw/colour.h"
 #include "draw/plot/heatmap.h"
 #include "draw/terminal/terminal.h"
+#include "format/matrix.h"
 #include "render/render.h"
+#include "stats/matrix/heat_table.h"
 #include "stats/matrix/merge.h"
 #include "world/grid/task.h"
 

@@ -1,9 +1,28 @@
 // synpo-render policy: what a checkpoint would do in every cell of a maze, against the planner.
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/cli/options.h"
 #include "base/error.h"
+#include "base/files/io.h"
+#include "base/parallel.h"
+#include "base/random.h"
+#include "draw/canvas/font.h"
+#include "draw/face/policy_stage.h"
+#include "draw/face/world_face.h"
 #include "draw/worlds/faces.h"
+#include "format/checkpoint.h"
+#include "nn/buffer.h"
 #include "play/cell_policy.h"
+#include "play/episode.h"
 #include "play/model.h"
+#include "policy/policy.h"
 #include "render/render.h"
+#include "world/observation.h"
+#include "world/world.h"
 
 using namespace synpo;
 

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/freetype.hpp>
 #include <opencv2/imgproc.hpp>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/files/io.h"

@@ -1,8 +1,5 @@
 #include "draw/canvas/heading.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "draw/colour.h"
 
 namespace synpo {

@@ -1,5 +1,8 @@
 #include "draw/canvas/key.h"
 
+#include <cstddef>
+#include <utility>
+
 #include "draw/colour.h"
 
 namespace synpo {

@@ -4,7 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "base/rgb.h"
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 
 namespace synpo {
 

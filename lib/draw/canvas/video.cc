@@ -9,6 +9,7 @@
 #include "base/files/destination.h"
 #include "base/files/file_uses.h"
 #include "base/files/unfinished.h"
+#include "base/rgb.h"
 
 namespace synpo {
 namespace {

@@ -7,6 +7,9 @@
 #include "draw/colour.h"
 #include "draw/episode/history_row.h"
 #include "draw/episode/plan_layout.h"
+#include "draw/face/plan_grid.h"
+#include "world/observation.h"
+#include "world/world.h"
 
 namespace synpo {
 namespace {

@@ -1,14 +1,18 @@
 #include "draw/episode/episode_picture.h"
 
 #include <algorithm>
+#include <vector>
 
 #include "base/error.h"
 #include "draw/canvas/heading.h"
+#include "draw/canvas/key.h"
 #include "draw/colour.h"
 #include "draw/episode/film_strip.h"
 #include "draw/episode/plan_layout.h"
 #include "draw/episode/time_bar.h"
 #include "draw/face/path.h"
+#include "draw/face/plan_grid.h"
+#include "world/world.h"
 
 namespace synpo {
 namespace {

@@ -4,6 +4,8 @@
 #include <string>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
+#include "draw/face/film.h"
 #include "draw/face/world_face.h"
 
 namespace synpo {

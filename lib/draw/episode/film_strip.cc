@@ -1,6 +1,8 @@
 #include "draw/episode/film_strip.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <utility>
 
 #include "draw/colour.h"
 

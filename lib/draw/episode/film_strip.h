@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "base/rgb.h"
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/key.h"
 
 namespace synpo {

@@ -1,8 +1,10 @@
 #include "draw/episode/history_row.h"
 
+#include <algorithm>
+
 #include "base/error.h"
 #include "draw/colour.h"
-#include "world/world.h"
+#include "world/observation.h"
 
 namespace synpo {
 namespace {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/key.h"
 
 namespace synpo {

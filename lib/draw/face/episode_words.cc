@@ -1,6 +1,7 @@
 #include "draw/face/episode_words.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 

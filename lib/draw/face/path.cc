@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/stroke.h"
 #include "draw/colour.h"
 #include "draw/paper.h"

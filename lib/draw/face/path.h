@@ -2,6 +2,7 @@
 #pragma once
 #include <vector>
 
+#include "base/rgb.h"
 #include "draw/canvas/canvas.h"
 #include "draw/face/plan_grid.h"
 

@@ -1,5 +1,6 @@
 // A policy against the expert, with the agent in every place of an environment.
 #pragma once
+#include <cstddef>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #include "draw/face/world_face.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 
 #include "base/error.h"
@@ -8,6 +10,7 @@
 #include "draw/face/episode_words.h"
 #include "draw/face/path.h"
 #include "draw/paper.h"
+#include "world/observation.h"
 
 namespace synpo {
 

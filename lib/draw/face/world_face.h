@@ -7,9 +7,11 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/key.h"
 #include "draw/face/film.h"
 #include "draw/face/plan_grid.h"

@@ -1,8 +1,11 @@
 #include "draw/grid/grid_face.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 #include "base/error.h"
+#include "base/rgb.h"
 #include "draw/colour.h"
 #include "draw/face/episode_words.h"
 #include "draw/face/path.h"
@@ -10,6 +13,7 @@
 #include "draw/grid/policy_picture.h"
 #include "draw/paper.h"
 #include "world/grid/view.h"
+#include "world/observation.h"
 
 namespace synpo {
 namespace {

@@ -1,12 +1,25 @@
 // GridWorld's face: mazes, treasures and what the agent sees of them.
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
+#include "draw/canvas/key.h"
+#include "draw/face/film.h"
+#include "draw/face/plan_grid.h"
+#include "draw/face/policy_stage.h"
 #include "draw/face/world_face.h"
+#include "draw/map_style.h"
+#include "draw/terminal/block_plans.h"
+#include "draw/terminal/terminal.h"
 #include "world/grid/grid_set.h"
 #include "world/grid/gridworld.h"
+#include "world/grid/maze.h"
+#include "world/grid/task.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -3,7 +3,9 @@
 #include <array>
 #include <vector>
 
+#include "base/rgb.h"
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/key.h"
 #include "draw/face/plan_grid.h"
 #include "draw/map_style.h"

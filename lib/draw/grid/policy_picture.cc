@@ -1,11 +1,16 @@
 #include "draw/grid/policy_picture.h"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
 
 #include "base/error.h"
+#include "base/rgb.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/key.h"
 #include "draw/colour.h"
+#include "draw/face/plan_grid.h"
 #include "draw/grid/maze_picture.h"
 #include "stats/report/text_table.h"
 #include "world/grid/gridworld.h"

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/face/policy_stage.h"
 #include "world/grid/maze.h"
 #include "world/grid/task.h"

@@ -1,9 +1,11 @@
 #include "draw/kitchen/kitchen_colours.h"
 
 #include <cmath>
+#include <cstddef>
 
 #include "draw/colour.h"
 #include "draw/paper.h"
+#include "world/kitchen/geometry/kitchen.h"
 
 namespace synpo {
 namespace {

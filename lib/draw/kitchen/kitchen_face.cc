@@ -4,6 +4,8 @@
 #include "draw/face/episode_words.h"
 #include "draw/kitchen/kitchen_colours.h"
 #include "draw/kitchen/kitchen_picture.h"
+#include "world/kitchen/geometry/tables.h"
+#include "world/kitchen/rules.h"
 
 namespace synpo {
 

@@ -1,12 +1,23 @@
 // The kitchens' face: plans with furniture and objects, the agent's looks, and what it did to things.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
+#include "draw/canvas/key.h"
+#include "draw/face/film.h"
+#include "draw/face/plan_grid.h"
 #include "draw/face/world_face.h"
+#include "draw/map_style.h"
+#include "draw/terminal/block_plans.h"
+#include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/view/view.h"
+#include "world/world.h"
 
 namespace synpo {
 

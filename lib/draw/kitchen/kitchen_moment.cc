@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <vector>
 
+#include "base/rgb.h"
 #include "draw/kitchen/kitchen_picture.h"
 #include "world/kitchen/geometry/make_tables.h"
 

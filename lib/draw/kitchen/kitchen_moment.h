@@ -3,6 +3,8 @@
 #include "draw/canvas/canvas.h"
 #include "draw/face/plan_grid.h"
 #include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/geometry/ray.h"
+#include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/view/view.h"
 
 namespace synpo {

@@ -1,15 +1,20 @@
 #include "draw/kitchen/kitchen_picture.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
+#include <string>
 
 #include "base/error.h"
+#include "base/rgb.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/stroke.h"
 #include "draw/colour.h"
 #include "draw/kitchen/kitchen_colours.h"
 #include "draw/paper.h"
+#include "world/kitchen/geometry/palette.h"
 
 namespace synpo {
 namespace {

@@ -1,11 +1,25 @@
 // A moment in a kitchen: from above, as the agent sees it, and what the network's features are made of.
+#include <cmath>
 #include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/key.h"
+#include "draw/face/film.h"
+#include "draw/face/plan_grid.h"
+#include "draw/face/world_face.h"
 #include "draw/kitchen/kitchen_colours.h"
 #include "draw/kitchen/kitchen_face.h"
 #include "draw/kitchen/kitchen_moment.h"
 #include "draw/kitchen/kitchen_picture.h"
+#include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/geometry/tables.h"
+#include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/rules.h"
+#include "world/kitchen/view/view.h"
+#include "world/world.h"
 
 namespace synpo {
 

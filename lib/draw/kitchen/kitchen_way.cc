@@ -1,15 +1,28 @@
 // An episode's way over a kitchen's plan.
 #include <algorithm>
+#include <cstddef>
+#include <vector>
 
 #include "base/error.h"
+#include "base/rgb.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/key.h"
 #include "draw/canvas/stroke.h"
 #include "draw/colour.h"
+#include "draw/face/film.h"
 #include "draw/face/path.h"
+#include "draw/face/plan_grid.h"
+#include "draw/face/world_face.h"
 #include "draw/kitchen/kitchen_colours.h"
 #include "draw/kitchen/kitchen_face.h"
 #include "draw/kitchen/kitchen_moment.h"
 #include "draw/kitchen/kitchen_picture.h"
 #include "draw/paper.h"
+#include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/geometry/ray.h"
+#include "world/kitchen/geometry/tables.h"
+#include "world/kitchen/view/view.h"
+#include "world/world.h"
 
 namespace synpo {
 namespace {

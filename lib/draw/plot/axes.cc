@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
+#include "base/rgb.h"
 #include "draw/colour.h"
 
 namespace synpo {

@@ -1,8 +1,7 @@
 // The frame of a plot: axes with ticks, labels and titles, and a light grid.
 #pragma once
-#include <string>
-
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/ticks.h"
 
 namespace synpo {

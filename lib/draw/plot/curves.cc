@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "base/error.h"
 #include "draw/colour.h"
 #include "draw/plot/curves_legend.h"
+#include "stats/interval.h"
 
 namespace synpo {
 namespace {

@@ -1,13 +1,17 @@
 // Learning curves (Figures 2, 3 and 7): methods against updates, states or minutes, seen and unseen pairs in panels of
 // their own or as two styles of line, each method a mean with a band over its runs.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/error.h"
+#include "base/rgb.h"
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/heading.h"
 #include "draw/canvas/stroke.h"
 #include "draw/plot/axes.h"

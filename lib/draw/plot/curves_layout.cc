@@ -1,9 +1,19 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
+#include "draw/canvas/heading.h"
+#include "draw/canvas/ticks.h"
+#include "draw/plot/axes.h"
 #include "draw/plot/curves.h"
 #include "draw/plot/curves_legend.h"
+#include "stats/curve.h"
 
 namespace synpo {
 namespace {

@@ -1,7 +1,8 @@
 #include "draw/plot/curves_legend.h"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 #include "draw/canvas/stroke.h"
 #include "draw/colour.h"

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/plot/curves.h"
 
 namespace synpo {

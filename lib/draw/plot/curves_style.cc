@@ -1,7 +1,11 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
 #include <stdexcept>
+#include <string>
 
 #include "draw/plot/curves.h"
 

@@ -1,7 +1,8 @@
 #include "draw/plot/dendrogram.h"
 
 #include <cmath>
-#include <utility>
+#include <cstddef>
+#include <vector>
 
 #include "draw/colour.h"
 

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "base/error.h"
+#include "base/rgb.h"
 #include "draw/canvas/heading.h"
+#include "draw/canvas/ticks.h"
 #include "draw/colour.h"
 #include "draw/plot/axes.h"
 #include "draw/plot/labels.h"

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/key.h"
 #include "stats/distance.h"
 

@@ -1,7 +1,10 @@
 #include "draw/plot/heatmap.h"
 
+#include <cstddef>
 #include <optional>
 
+#include "base/rgb.h"
+#include "draw/colour.h"
 #include "draw/plot/dendrogram.h"
 #include "draw/plot/heatmap_legend.h"
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/canvas/heading.h"
-#include "draw/colour.h"
 #include "stats/matrix/heat_table.h"
 
 namespace synpo {

@@ -1,9 +1,18 @@
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "base/error.h"
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
+#include "draw/canvas/heading.h"
 #include "draw/plot/heatmap.h"
 #include "draw/plot/heatmap_legend.h"
+#include "stats/cluster.h"
+#include "stats/matrix/heat_table.h"
 #include "stats/report/text_table.h"
 
 namespace synpo {

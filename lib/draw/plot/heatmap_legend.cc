@@ -1,6 +1,7 @@
 #include "draw/plot/heatmap_legend.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "base/error.h"
 

@@ -3,7 +3,11 @@
 #include <string>
 #include <vector>
 
+#include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
+#include "draw/colour.h"
 #include "draw/plot/heatmap.h"
+#include "stats/matrix/heat_table.h"
 
 namespace synpo {
 

@@ -1,6 +1,8 @@
 #include "draw/plot/labels.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <utility>
 
 namespace synpo {
 namespace {

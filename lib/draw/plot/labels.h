@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 
 namespace synpo {
 

@@ -1,6 +1,7 @@
 #include "draw/terminal/block_plans.h"
 
 #include <algorithm>
+#include <cstddef>
 
 #include "stats/report/text_table.h"
 

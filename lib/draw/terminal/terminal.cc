@@ -4,7 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <vector>
 
 #include "base/error.h"
 #include "stats/report/text_table.h"

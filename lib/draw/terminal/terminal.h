@@ -2,6 +2,7 @@
 #pragma once
 #include <string>
 
+#include "base/rgb.h"
 #include "draw/colour.h"
 #include "stats/matrix/heat_table.h"
 

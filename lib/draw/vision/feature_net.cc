@@ -1,6 +1,7 @@
 #include "draw/vision/feature_net.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>

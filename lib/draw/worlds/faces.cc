@@ -1,11 +1,15 @@
 #include "draw/worlds/faces.h"
 
+#include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "base/text.h"
 #include "draw/grid/grid_face.h"
 #include "draw/kitchen/kitchen_face.h"
+#include "world/grid/grid_set.h"
+#include "world/kitchen/kitchen_set.h"
 
 namespace synpo {
 namespace {

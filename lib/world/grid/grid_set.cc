@@ -1,7 +1,9 @@
 #include "world/grid/grid_set.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "world/grid/view.h"

@@ -1,9 +1,16 @@
 // GridWorld as a World: mazes, their planners, and tasks.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
+#include "base/random.h"
+#include "world/grid/gridworld.h"
+#include "world/grid/maze.h"
 #include "world/grid/planner.h"
+#include "world/grid/task.h"
+#include "world/observation.h"
 #include "world/world.h"
 
 namespace synpo {

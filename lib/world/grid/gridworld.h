@@ -7,8 +7,8 @@
 // episode that has not ended is cut: truncated, not terminated.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "base/random.h"
 #include "world/grid/maze.h"

@@ -1,7 +1,6 @@
 #include "world/grid/maze.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cstdlib>
 #include <filesystem>
 #include <string_view>

@@ -1,6 +1,8 @@
 #include "world/grid/planner.h"
 
-#include <algorithm>
+#include <cstddef>
+
+#include "world/world.h"
 
 namespace synpo {
 namespace {

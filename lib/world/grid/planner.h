@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "world/grid/gridworld.h"
+#include "world/grid/maze.h"
+#include "world/grid/task.h"
 
 namespace synpo {
 

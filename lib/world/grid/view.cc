@@ -1,7 +1,6 @@
 #include "world/grid/view.h"
 
 #include <algorithm>
-#include <cstdlib>
 #include <cstring>
 
 namespace synpo {

@@ -9,7 +9,10 @@
 
 #include "base/rgb.h"
 #include "world/grid/gridworld.h"
+#include "world/grid/maze.h"
+#include "world/grid/task.h"
 #include "world/observation.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -2,10 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
 
 #include "base/error.h"
 #include "base/random.h"
 #include "world/kitchen/geometry/make_tables.h"
+#include "world/kitchen/geometry/ray.h"
+#include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/planner.h"
 
 namespace synpo {

@@ -1,11 +1,13 @@
 #include "world/kitchen/kitchen_set.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstring>
 
 #include "base/error.h"
 #include "base/hash.h"
 #include "world/kitchen/builtin_kitchens.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 

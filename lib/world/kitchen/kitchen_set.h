@@ -1,13 +1,21 @@
 // Kitchens from plans: the objects lie on any slots, and what the agent sees is drawn and made into features on the
 // way.
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/random.h"
+#include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/geometry/make_tables.h"
+#include "world/kitchen/geometry/ray.h"
+#include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/kitchen_world.h"
-#include "world/kitchen/view/features.h"
+#include "world/kitchen/planner.h"
+#include "world/kitchen/rules.h"
+#include "world/kitchen/view/view.h"
+#include "world/world.h"
 
 namespace synpo {
 

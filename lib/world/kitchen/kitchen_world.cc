@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "base/error.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 namespace {

@@ -2,12 +2,17 @@
 // tables and features come from, KitchenSet (plans) and RecordedKitchens (files) say.
 #pragma once
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/planner.h"
-#include "world/kitchen/view/features.h"
+#include "world/kitchen/rules.h"
+#include "world/observation.h"
 #include "world/world.h"
 
 namespace synpo {

@@ -1,8 +1,10 @@
 #include "world/kitchen/planner.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
+#include "world/world.h"
 
 namespace synpo {
 namespace {

@@ -5,13 +5,15 @@
 // out does not depend on what was kept.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <mutex>
-#include <span>
 #include <string>
 #include <vector>
 
+#include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/rules.h"
 
 namespace synpo {

@@ -1,12 +1,16 @@
 #include "world/kitchen/recorded_kitchens.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/half.h"
+#include "world/kitchen/geometry/kitchen.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 namespace {

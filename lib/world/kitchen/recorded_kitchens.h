@@ -1,11 +1,18 @@
 // Kitchens from files: the objects lie in one of some layouts, and what the agent sees from everywhere is known
 // beforehand. In each layout object i is slot i of that layout's tables.
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/random.h"
+#include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/kitchen_world.h"
+#include "world/kitchen/planner.h"
+#include "world/kitchen/rules.h"
+#include "world/world.h"
 
 namespace synpo {
 

@@ -11,10 +11,12 @@
 // truncated, not terminated.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "base/random.h"
+#include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/geometry/tables.h"
 #include "world/world.h"
 

@@ -13,6 +13,7 @@
 #include "play/model.h"
 #include "play/world_factory.h"
 #include "world/grid/view.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 namespace {

@@ -9,6 +9,7 @@
 #include "base/hash.h"
 #include "helpers/kitchens.h"
 #include "world/kitchen/kitchen_set.h"
+#include "world/kitchen/view/features.h"
 
 namespace synpo {
 namespace {

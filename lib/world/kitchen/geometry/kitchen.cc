@@ -1,6 +1,7 @@
 #include "world/kitchen/geometry/kitchen.h"
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/error.h"
 #include "base/hash.h"

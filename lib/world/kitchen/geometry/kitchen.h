@@ -6,6 +6,7 @@
 // colours and tables follow from it.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>

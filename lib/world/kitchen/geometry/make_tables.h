@@ -6,6 +6,7 @@
 // cells of counters and tables, at most kMaxKitchenSlots, each with some pose from which it is nearer than every other,
 // so that whatever lies there can be picked up whatever lies elsewhere.
 #pragma once
+#include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/geometry/ray.h"
 #include "world/kitchen/geometry/tables.h"
 

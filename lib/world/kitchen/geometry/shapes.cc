@@ -1,5 +1,7 @@
 #include "world/kitchen/geometry/shapes.h"
 
+#include "world/kitchen/geometry/kitchen.h"
+
 namespace synpo {
 namespace {
 

@@ -2,6 +2,7 @@
 // geometry, so that they can be filled from a plan (make_tables.h) or from a file.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>

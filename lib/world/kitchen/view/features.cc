@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <memory>
 
 #include "base/hash.h"
+#include "world/kitchen/geometry/tables.h"
 
 namespace synpo {
 namespace {

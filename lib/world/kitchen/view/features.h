@@ -5,6 +5,7 @@
 #pragma once
 #include <cstdint>
 
+#include "world/kitchen/geometry/ray.h"
 #include "world/kitchen/view/view.h"
 
 namespace synpo {

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+#include "world/kitchen/geometry/kitchen.h"
 
 namespace synpo {
 namespace {

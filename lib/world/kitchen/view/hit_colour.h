@@ -1,5 +1,6 @@
 // The colour that a ray brings back: that of the thing, some sides and distances darker than others.
 #pragma once
+#include "world/kitchen/geometry/palette.h"
 #include "world/kitchen/geometry/ray.h"
 
 namespace synpo {

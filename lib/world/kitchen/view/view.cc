@@ -1,9 +1,12 @@
 #include "world/kitchen/view/view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <limits>
+#include <vector>
 
+#include "world/kitchen/geometry/palette.h"
 #include "world/kitchen/view/hit_colour.h"
 
 namespace synpo {

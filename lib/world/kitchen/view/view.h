@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/geometry/ray.h"
 #include "world/kitchen/geometry/tables.h"
 
