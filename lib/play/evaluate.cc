@@ -31,34 +31,41 @@ int choose(const float* scores, int actions, double temperature, Uniform&& unifo
 
 }  // namespace
 
+EpisodePlan listed(std::vector<EvalEpisode> episodes) {
+  const auto count = int64_t(episodes.size());
+  return {count, [list = std::move(episodes)](int64_t position) { return list[size_t(position)]; }};
+}
+
 std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
-                               const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
-                               const EvalOptions& options, const EpisodeSink& sink,
-                               const std::function<void(size_t)>& progress) {
-  if (episodes.size() > size_t(INT32_MAX))
-    fail(Exit::kUsage, "found ", episodes.size(), " episodes, expected at most ", INT32_MAX);
-  // Every thread keeps its batch filled from one list, so that batches are small at its end alone.
-  const int total = int(episodes.size()), actions = world.actions(), threads = parallel.threads();
-  const int most = std::clamp((total + threads - 1) / threads, 1, Policy<float>::kInferenceUnit);
+                               const std::vector<EnvTask>& pairs, const EpisodePlan& plan, const EvalOptions& options,
+                               const EpisodeSink& sink, const std::function<void(size_t)>& progress) {
+  // Every thread keeps its batch filled from one plan, so that batches are small at its end alone.
+  const int64_t total = plan.count;
+  const int actions = world.actions(), threads = parallel.threads();
+  const int most = int(std::clamp<int64_t>((total + threads - 1) / threads, 1, Policy<float>::kInferenceUnit));
   std::mutex mutex;  // of what follows
-  int next = 0, done = 0, written = 0;
-  std::map<int, Trajectory> waiting;  // for those before them
+  int64_t next = 0, done = 0, written = 0;
+  std::map<int64_t, Trajectory> waiting;  // for those before them
   std::vector<Outcomes> results(pairs.size());
   const auto take = [&] {
     std::lock_guard lock(mutex);
-    return next < total ? next++ : -1;
+    return next < total ? next++ : int64_t{-1};
   };
-  const auto finish = [&](int number, const Outcomes& outcome, const EpisodeRecord& record) {
-    const EvalEpisode& job = episodes[size_t(number)];
+  // An episode of the plan that is being played in a place of a batch.
+  struct Job {
+    int64_t position = -1;
+    EvalEpisode episode = {};
+  };
+  const auto finish = [&](const Job& job, const Outcomes& outcome, const EpisodeRecord& record) {
     Trajectory trajectory;
-    if (sink) trajectory = to_trajectory(world, record, options.seed, job.number, options.window);
+    if (sink) trajectory = to_trajectory(world, record, options.seed, job.episode.number, options.window);
     std::lock_guard lock(mutex);
-    results[size_t(job.pair)].add(outcome);
+    results[size_t(job.episode.pair)].add(outcome);
     ++done;
     try {
       if (progress) progress(size_t(done));
       if (!sink) return;
-      waiting.emplace(number, std::move(trajectory));
+      waiting.emplace(job.position, std::move(trajectory));
       for (; !waiting.empty() && waiting.begin()->first == written; ++written)
         sink(waiting.extract(waiting.begin()).mapped());
     } catch (...) {
@@ -69,16 +76,17 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
 
   parallel.run(threads, [&](int, int thread) {
     EpisodeBatch batch(world, most);
-    std::vector<int> numbers(static_cast<size_t>(most), -1);  // of a place's episode in the list
+    std::vector<Job> jobs(static_cast<size_t>(most));  // of the places
     std::vector<EpisodeRecord> records(static_cast<size_t>(most));
     std::vector<uint8_t> observations(size_t(most) * world.observation_size());
     std::vector<float> logits(size_t(most) * size_t(actions));
     const auto start = [&](int place) {
-      const int number = numbers[size_t(place)] = take();
-      if (number < 0) return false;
-      const EvalEpisode& job = episodes[size_t(number)];
-      const EnvTask pair = pairs[size_t(job.pair)];
-      batch[place].start(pair, episode_start(world, pair, options.seed, options.use.starts, job.number));
+      Job& job = jobs[size_t(place)];
+      job.position = take();
+      if (job.position < 0) return false;
+      job.episode = plan.at(job.position);
+      const EnvTask pair = pairs[size_t(job.episode.pair)];
+      batch[place].start(pair, episode_start(world, pair, options.seed, options.use.starts, job.episode.number));
       records[size_t(place)] = {pair, batch[place].now()};
       return true;
     };
@@ -87,15 +95,15 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
     while (!running.empty()) {
       batch.observe(running, options.window, observations.data());
       pair_of.clear();
-      for (const int place : running) pair_of.push_back(episodes[size_t(numbers[size_t(place)])].pair);
+      for (const int place : running) pair_of.push_back(jobs[size_t(place)].episode.pair);
       policy.infer(thread, int(running.size()), observations.data(), pair_of.data(), logits.data());
       const float* scores = logits.data();
       for (int& place : running) {
         RunningEpisode& episode = batch[place];
-        const int number = numbers[size_t(place)];
+        const Job& job = jobs[size_t(place)];
         const int action = choose(scores, actions, options.temperature, [&] {
           return Random(options.seed, options.use.moves, world.pair_number(episode.pair),
-                        uint64_t(episodes[size_t(number)].number) << 16 | episode.now().steps)
+                        uint64_t(job.episode.number) << 16 | episode.now().steps)
               .uniform();
         });
         scores += actions;
@@ -103,7 +111,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
         const WorldStep step = episode.step(world, action);
         if (sink) records[size_t(place)].add(label, action, step);
         if (!step.ended()) continue;
-        finish(number, episode.outcome(step), records[size_t(place)]);
+        finish(job, episode.outcome(step), records[size_t(place)]);
         if (!start(place)) place = -1;
       }
       std::erase(running, -1);
@@ -116,11 +124,10 @@ Matrix success_matrix(Parallel& parallel, const World& world, Model& model, cons
                       const MatrixPlan& plan, const EpisodeSink& sink, const std::function<void(size_t)>& progress) {
   const std::vector<EnvTask> pairs = resolve_pairs(world, plan.pairs, false, plan.pairs_file);
   std::vector<std::pair<int, int>> numbers;
-  std::vector<EvalEpisode> episodes;
-  for (size_t p = 0; p < pairs.size(); ++p) {
-    numbers.emplace_back(pairs[p].env, pairs[p].task);
-    for (int64_t e = 0; e < plan.count; ++e) episodes.push_back({int(p), plan.first + e});
-  }
+  for (const EnvTask& pair : pairs) numbers.emplace_back(pair.env, pair.task);
+  const EpisodePlan episodes = {int64_t(pairs.size()) * plan.count, [&](int64_t position) {
+                                  return EvalEpisode{int(position / plan.count), plan.first + position % plan.count};
+                                }};
   model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
   const std::vector<Outcomes> results = evaluate(parallel, *model.policy, world, pairs, episodes,
                                                  {plan.seed, model.window, plan.temperature, plan.use}, sink, progress);
@@ -175,7 +182,7 @@ RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, co
     for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
     model.policy->prepare_inference(parallel, parameters, statistics, pairs);
     Outcomes sum;
-    for (const Outcomes& result : evaluate(parallel, *model.policy, world, groups[seen], jobs,
+    for (const Outcomes& result : evaluate(parallel, *model.policy, world, groups[seen], listed(std::move(jobs)),
                                            {model.seed, model.window, model.policy->temperature(), kForRunLog}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;

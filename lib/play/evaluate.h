@@ -24,6 +24,13 @@ struct EvalEpisode {
   int64_t number;
 };
 
+// Episodes to run, each made when it is due: so many of them that no list could hold them, perhaps.
+struct EpisodePlan {
+  int64_t count;
+  std::function<EvalEpisode(int64_t position)> at;  // called from any thread
+};
+EpisodePlan listed(std::vector<EvalEpisode> episodes);
+
 // What episodes are played for: each use has starts and moves of its own, so that none is tested on what another one
 // learned from or chose by.
 struct EpisodeUse {
@@ -40,14 +47,15 @@ struct EvalOptions {
   EpisodeUse use = kForMatrix;
 };
 
-// Called with every episode in the order of the list, one at a time, from any thread.
+// Called with every episode in the order of the plan, one at a time, from any thread.
 using EpisodeSink = std::function<void(const Trajectory&)>;
 
 // Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the
-// order of `pairs`; neither threads nor what else is in the list changes an episode.
+// order of `pairs`; neither threads nor what else is in the plan changes an episode. Memory does not grow with their
+// number.
 std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
-                               const std::vector<EnvTask>& pairs, const std::vector<EvalEpisode>& episodes,
-                               const EvalOptions& options, const EpisodeSink& sink = nullptr,
+                               const std::vector<EnvTask>& pairs, const EpisodePlan& plan, const EvalOptions& options,
+                               const EpisodeSink& sink = nullptr,
                                const std::function<void(size_t done)>& progress = nullptr);
 
 // Episodes first .. first + count - 1 of every pair.

@@ -81,7 +81,7 @@ TEST(OtherWorld, ItsTasksAreLearned) {
   std::vector<EvalEpisode> episodes;
   for (int i = 0; i < 40; ++i) episodes.push_back({i % 2, i});
   for (const Outcomes& result :
-       evaluate(parallel, *model.policy, corridor(), {{0, 0}, {0, 1}}, episodes, {1, model.window, 0}))
+       evaluate(parallel, *model.policy, corridor(), {{0, 0}, {0, 1}}, listed(episodes), {1, model.window, 0}))
     EXPECT_EQ(result.successes, 20);
 }
 

@@ -71,7 +71,7 @@ std::vector<Outcomes> run(FunctionPolicy::Scores scores, const std::vector<EvalE
                           const EvalOptions& options = {}) {
   Parallel parallel(threads);
   FunctionPolicy policy(scores);
-  return evaluate(parallel, policy, builtin_world(), kPairs, episodes, options);
+  return evaluate(parallel, policy, builtin_world(), kPairs, listed(episodes), options);
 }
 
 // One episode played by itself.
@@ -130,9 +130,10 @@ TEST(Evaluate, ActionsAreDrawnWithTheProbabilitiesOfThePolicy) {
     EvalOptions options;
     options.temperature = temperature;
     double steps = 0;
-    evaluate(parallel, policy, builtin_world(), kPairs, episodes_of(0, 40), options, [&](const Trajectory& trajectory) {
-      for (const uint8_t action : trajectory.actions) ++count[action], ++steps;
-    });
+    evaluate(parallel, policy, builtin_world(), kPairs, listed(episodes_of(0, 40)), options,
+             [&](const Trajectory& trajectory) {
+               for (const uint8_t action : trajectory.actions) ++count[action], ++steps;
+             });
     for (double& c : count) c /= steps;
     EXPECT_EQ(steps, 40 * 3 * kStepLimit);  // without picks every episode runs out of time
     return count;
@@ -217,6 +218,24 @@ TEST(Evaluate, ALearnerThatOnlyPicksEndsWrongOrTimesOut) {
   EXPECT_GT(first_picks, 2);
 }
 
+TEST(Evaluate, APlanBeyondAnyListTakesNoMemoryAndCanBeLeft) {
+  constexpr int64_t kCount = int64_t{1} << 45;
+  for (const int threads : {1, 2}) {
+    Parallel parallel(threads);
+    FunctionPolicy policy(hashed);
+    const EpisodePlan plan = {kCount, [](int64_t position) { return EvalEpisode{0, kCount - position}; }};
+    std::vector<int64_t> numbers;
+    EXPECT_THROW(evaluate(parallel, policy, builtin_world(), kPairs, plan, {},
+                          [&](const Trajectory& t) {
+                            numbers.push_back(t.episode);
+                            if (numbers.size() == 100) throw std::runtime_error("enough");
+                          }),
+                 std::runtime_error);
+    ASSERT_EQ(numbers.size(), 100u);
+    for (int64_t i = 0; i < 100; ++i) EXPECT_EQ(numbers[size_t(i)], kCount - i);
+  }
+}
+
 TEST(Evaluate, EpisodesOfOtherUsesStartAndMoveInTheirOwnWay) {
   Parallel parallel(2);
   FunctionPolicy policy(uneven);
@@ -225,7 +244,7 @@ TEST(Evaluate, EpisodesOfOtherUsesStartAndMoveInTheirOwnWay) {
     EvalOptions options;
     options.temperature = 1;
     options.use = use;
-    evaluate(parallel, policy, builtin_world(), kPairs, episodes_of(0, 10), options, [&](const Trajectory& t) {
+    evaluate(parallel, policy, builtin_world(), kPairs, listed(episodes_of(0, 10)), options, [&](const Trajectory& t) {
       const EnvTask pair = {builtin_world().env_index(t.env), builtin_world().task_index(t.task)};
       EXPECT_EQ(replay(builtin_world(), t).start,
                 episode_start(builtin_world(), pair, options.seed, use.starts, t.episode));
@@ -251,7 +270,7 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
     size_t done = 0;
     Outcomes sum, recorded;
     for (const Outcomes& result : evaluate(
-             parallel, policy, builtin_world(), kPairs, episodes, {3, 1},
+             parallel, policy, builtin_world(), kPairs, listed(episodes), {3, 1},
              [&](const Trajectory& t) {
                const EvalEpisode& episode = episodes[lines[threads - 1].size()];
                lines[threads - 1].push_back(format_trajectory(t));
