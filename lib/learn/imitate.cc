@@ -99,7 +99,7 @@ void Imitation::take_weights(const Model& other) {
     std::copy_n(other.statistics.data(), other.statistics.size(), to->data());
 }
 
-void Imitation::add_trajectories(TrajectoryStream& stream) {
+void Imitation::read(TrajectoryStream& stream) {
   const int64_t wanted = int64_t(model_.updates == 0 ? std::max(options_.fill, options_.read) : options_.read);
   // All or none of them: a signal may come while the stream is read.
   std::vector<Episode> episodes;
@@ -117,8 +117,7 @@ void Imitation::add_trajectories(TrajectoryStream& stream) {
   if (model_.window < 0) model_.window = stream.window();
 }
 
-bool Imitation::update(TrajectoryStream& stream) {
-  add_trajectories(stream);
+bool Imitation::learn() {
   if (memory_.size() == 0) return false;
   const bool single_steps = options_.batch_states > 0;
   batch_.needs = model_.policy->needs();

@@ -34,9 +34,16 @@ class Imitation {
   // Takes the weights of another model, whose shape must be this one's (kData).
   void take_weights(const Model& other);
 
-  // One update: reads, draws, learns. False when there is nothing to draw from: the stream ended before its first
-  // trajectory. Throws Stopped, and is as it was before, where a stop signal comes while the stream is read.
-  bool update(TrajectoryStream& stream);
+  // One update: reads, then draws and learns.
+  bool update(TrajectoryStream& stream) {
+    read(stream);
+    return learn();
+  }
+  // What is due before the next update. Throws Stopped, and is as it was before, where a stop signal comes while the
+  // stream is read.
+  void read(TrajectoryStream& stream);
+  // False when there is nothing to draw from: the stream ended before its first trajectory.
+  bool learn();
 
   // Where the stream stood; a resumed run skips to there.
   uint64_t stream_lines() const { return stream_lines_; }
@@ -61,7 +68,6 @@ class Imitation {
 
  private:
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved);
-  void add_trajectories(TrajectoryStream& stream);
   // What is evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const {

@@ -42,6 +42,11 @@ std::unique_ptr<Imitation> fresh_run(const TrainingSettings& s, const World& wor
 
 }  // namespace
 
+int64_t updates_within(double limit_s, double elapsed_s, double updating_s, int64_t done) {
+  const double more = std::max(0.0, limit_s - elapsed_s) / std::max(updating_s, 1e-9) * double(done);
+  return done + int64_t(std::min(more, 1e18));
+}
+
 Training::Training(const TrainingSettings& settings, Parallel& parallel) : settings_(settings) {
   if (settings.resume.empty()) {
     world_ = open_world(settings.world);
@@ -55,12 +60,10 @@ Training::Training(const TrainingSettings& settings, Parallel& parallel) : setti
       fail(Exit::kUsage, kNoLimit, "the run was stopped before its limit in time was told in updates");
   }
   first_ = run_->updates();
-  timed_ = settings.limit_s > 0 ? updates_to_time(run_->options()) : 0;
+  to_time_ = settings.limit_s > 0 ? updates_to_time(run_->options()) : 0;
 }
 
-bool Training::finished() const {
-  return run_->updates() >= run_->total_updates() && run_->updates() >= first_ + timed_;
-}
+bool Training::finished() const { return !timing() && run_->updates() >= run_->total_updates(); }
 
 uint64_t Training::total() const { return run_->total_updates() == kUnknown ? 0 : uint64_t(run_->total_updates()); }
 
@@ -78,15 +81,22 @@ void Training::begin() {
 }
 
 void Training::update(Progress& progress) {
-  if (!run_->update(*stream_)) fail(Exit::kData, "standard input has no trajectory");
+  run_->read(*stream_);
+  if (run_->updates() == first_) filled_ = now();
+  if (!run_->learn()) fail(Exit::kData, "standard input has no trajectory");
   note_tested_start(progress);
   if (stream_->ended()) check_length();
-  if (timed_ > 0 && run_->updates() == first_ + timed_) tell_total(progress);
+  if (timing()) tell_total(progress);
 }
 
 void Training::tell_total(Progress& progress) {
+  const int64_t done = run_->updates() - first_;
   const double elapsed_s = seconds_since(start_);
-  run_->set_total_updates(first_ + std::max(timed_, int64_t(settings_.limit_s / elapsed_s * double(timed_))));
+  const int64_t fit = updates_within(settings_.limit_s, elapsed_s, seconds_since(filled_), done);
+  const bool too_slow = fit < to_time_ && elapsed_s >= settings_.limit_s / 2;
+  if (done < to_time_ && !too_slow) return;
+  run_->set_total_updates(first_ + std::min(fit, kMostUpdates - first_));
+  to_time_ = 0;
   if (first_ == 0 && settings_.told) progress.say(settings_.told(run_->total_updates()));
 }
 

@@ -40,6 +40,10 @@ struct TrainingSettings : LongRun {
   std::function<std::string(const TestedStart&)> on_tested_start = nullptr;
 };
 
+// How many updates fit into `limit_s`: `done` of them, at least 1, ended after `elapsed_s`. They took the last
+// `updating_s` of it; what was before is done once. At least `done`.
+int64_t updates_within(double limit_s, double elapsed_s, double updating_s, int64_t done);
+
 // A run that was stopped while its limit in time was still unknown as a number of updates goes on without a limit.
 constexpr Cause kNoLimit{"no limit"};
 
@@ -66,6 +70,7 @@ class Training : public LongWork {
 
  private:
   void check_length();
+  bool timing() const { return to_time_ > 0; }
   void tell_total(Progress& progress);
   void note_tested_start(Progress& progress);
 
@@ -74,9 +79,10 @@ class Training : public LongWork {
   std::unique_ptr<Imitation> run_;
   std::optional<Input> input_;
   std::optional<TrajectoryStream> stream_;
-  // A limit in time is told in updates by the rate of the first `timed_` ones.
-  int64_t first_ = 0, timed_ = 0;
-  TimePoint start_;
+  // A limit in time becomes a number of updates by the rate of the first `to_time_` ones, or of fewer where so many do
+  // not fit into it; 0: there is no such limit, or the number is known.
+  int64_t first_ = 0, to_time_ = 0;
+  TimePoint start_, filled_;
   bool noted_tested_start_ = false;
 };
 

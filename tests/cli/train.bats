@@ -147,6 +147,17 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
     cmp timed counted
 }
 
+@test "--time on a machine that is too slow for the first updates: no more than fit, and one at least" {
+    slow=(--batch-states 1024 --fill 20 --running 1024 --memory 30)
+    synpo-train "${slow[@]}" --time 0.02s <e.jsonl >timed 2>words
+    n=$(sed -n 's/.*; -n \([0-9]*\) repeats this run.*/\1/p' words)
+    [ "$n" -ge 1 ]
+    [ "$n" -lt 50 ]
+    [ "$(described timed .updates)" -eq "$n" ]
+    synpo-train -q "${slow[@]}" -n "$n" -j 1 <e.jsonl >counted
+    cmp timed counted
+}
+
 @test "a blank line, a missing last newline" {
     head -c -1 e.jsonl >cut.jsonl
     synpo-train "${TINY[@]}" -n 1 --fill 60 <cut.jsonl >a

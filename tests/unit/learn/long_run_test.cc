@@ -7,6 +7,7 @@
 
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
+#include "learn/training.h"
 
 namespace synpo {
 namespace {
@@ -68,6 +69,14 @@ TEST_F(LongRunTest, AFinishedRunIsWrittenAsItIs) {
   EXPECT_EQ(settings.drive("tool", work), 0);
   EXPECT_EQ(work.said, "save endsave ");
   EXPECT_EQ(contents(settings.save), contents(settings.output));
+}
+
+TEST(UpdatesWithin, TheTimeBeforeTheUpdatesCountsButNotInTheirRate) {
+  EXPECT_EQ(updates_within(20, 1, 1, 50), 1000);               // 19 s are left at 50 a second
+  EXPECT_EQ(updates_within(20, 11, 1, 50), 500);               // 10 s of it went before the first one
+  EXPECT_EQ(updates_within(20, 73, 73, 50), 50);               // those are made already
+  EXPECT_EQ(updates_within(20, 1.5, 1.5, 1), 13);              // 18.5 s are left for 12.3 more
+  EXPECT_EQ(updates_within(1e9, 0, 0, 1), int64_t(1e18) + 1);  // a clock that did not move
 }
 
 TEST_F(LongRunTest, OutputsAreFoundBeforeTheWork) {
