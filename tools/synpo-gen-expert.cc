@@ -64,7 +64,7 @@ int gen_expert(int argc, char** argv) {
   catch_stop_signals();
   const std::unique_ptr<World> opened = open_world(world_name);
   const World& world = *opened;
-  Output output(output_path);
+  Output output(output_path, Output::Kind::kStream);
   if (relabel_stream) {
     relabel(world, output);
     output.finish();

@@ -101,7 +101,7 @@ struct TsvLog::File {
   // Whole rows are written at once; of one that does not fit the file keeps nothing.
   void put(const std::string& text) {
     const off_t before = lseek(opened.get(), 0, SEEK_END);
-    if (write_all(opened.get(), text)) return;
+    if (write_until_stop(opened.get(), text)) return;
     fail_with_errno();
     if (!in_place && ftruncate(opened.get(), before) != 0) return;
   }

@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 
 #include "base/error.h"
 #include "base/signals.h"
@@ -77,6 +78,27 @@ bool write_all(int fd, std::string_view bytes) {
     const ssize_t put = ::write(fd, bytes.data() + done, bytes.size() - done);
     if (put < 0 && errno != EINTR) return false;
     if (put > 0) done += size_t(put);
+  }
+  return true;
+}
+
+bool write_until_stop(int fd, std::string_view bytes) {
+  struct stat status;
+  if (fstat(fd, &status) == 0 && S_ISREG(status.st_mode)) return write_all(fd, bytes);
+  while (!bytes.empty()) {
+    pollfd either[2] = {{fd, POLLOUT, 0}, {stop_descriptor(), POLLIN, 0}};
+    if (poll(either, 2, -1) < 0) {
+      if (errno != EINTR) return false;
+      continue;
+    }
+    if (either[0].revents == 0) {
+      errno = EINTR;
+      return false;
+    }
+    // For so many there is room, so that the write does not wait.
+    const std::string_view part = bytes.substr(0, PIPE_BUF);
+    if (!write_all(fd, part)) return false;
+    bytes.remove_prefix(part.size());
   }
   return true;
 }

@@ -44,5 +44,8 @@ Descriptor open_in_place(const std::string& path);
 
 // False, with errno, where it fails.
 bool write_all(int fd, std::string_view bytes);
+// The same, but where a pipe, a socket or a terminal takes nothing more it waits only until a stop signal has come
+// (signals.h); errno is then EINTR, and some of the bytes may be written.
+bool write_until_stop(int fd, std::string_view bytes);
 
 }  // namespace synpo

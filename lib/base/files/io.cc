@@ -107,7 +107,8 @@ struct Output::Place {
   std::unique_ptr<UnfinishedFile> file = {};
 };
 
-Output::Output(const std::string& path, Kind kind, bool force, const std::vector<std::string>& over) : path_(path) {
+Output::Output(const std::string& path, Kind kind, bool force, const std::vector<std::string>& over)
+    : path_(path), kind_(kind) {
   const Destination destination = Destination::find(path);
   place_ = std::make_unique<Place>(OutputUse(path, destination.identity(), over));
   switch (destination.kind) {
@@ -136,6 +137,7 @@ Output::~Output() = default;
 
 void Output::failed(const char* what) {
   if (errno == EPIPE) throw Stopped{SIGPIPE};
+  if (errno == EINTR) stop_if_asked();
   fail(Exit::kIo, "cannot ", what, " ", is_stdout() ? "standard output" : "'" + path_ + "'", ": ",
        std::strerror(errno));
 }
@@ -146,7 +148,8 @@ void Output::write(std::string_view bytes) {
 }
 
 void Output::flush() {
-  if (!write_all(fd_, buffer_)) failed("write");
+  const bool written = kind_ == Kind::kStream ? write_until_stop(fd_, buffer_) : write_all(fd_, buffer_);
+  if (!written) failed("write");
   buffer_.clear();
 }
 

@@ -58,7 +58,9 @@ class Input {
 // away is Stopped with SIGPIPE.
 class Output {
  public:
-  enum class Kind { kText, kBinary };
+  // A stream is text that a stop signal may end anywhere: where its reader does not read, write() and finish() wait
+  // only until one has come, and throw Stopped. What is of another kind waits for its reader whatever comes.
+  enum class Kind { kText, kStream, kBinary };
   // Binary output to a terminal is refused (kUsage, kTerminalOutput) unless `force`; so is a file that the command
   // reads or writes already (file_uses.h), but for those of `over`.
   explicit Output(const std::string& path, Kind kind = Kind::kText, bool force = false,
@@ -78,6 +80,7 @@ class Output {
   struct Place;
   [[noreturn]] void failed(const char* what);
   std::string path_;
+  Kind kind_;
   std::unique_ptr<Place> place_;
   int fd_ = 1;
   std::string buffer_;

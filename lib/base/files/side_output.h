@@ -13,7 +13,7 @@ namespace synpo {
 // check(), at the end of the work, throws.
 class SideOutput {
  public:
-  explicit SideOutput(const std::string& path) : output_(path) {}
+  explicit SideOutput(const std::string& path) : output_(path, Output::Kind::kStream) {}
   void write(std::string_view bytes);
   void finish();
   void check() const;

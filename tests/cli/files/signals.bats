@@ -82,6 +82,49 @@ stops() {
     done
 }
 
+# A command that nobody reads, on pipe: when it waits there, the signal ends it.
+stops_unread() {
+    local signal=$1 code=$2 status=0 i
+    shift 2
+    env --default-signal=HUP,INT "$@" 2>err 3>&- &
+    pid=$!
+    exec 9<pipe
+    for ((i = 0; i < 400; ++i)); do
+        grep -qE 'poll|pipe_w' "/proc/$pid/wchan" 2>/dev/null && break
+        [ "$i" -gt 60 ] && grep -q '^State:.S' "/proc/$pid/status" && break
+        sleep 0.05
+    done
+    kill -"$signal" "$pid"
+    for ((i = 0; i < 200; ++i)); do
+        kill -0 "$pid" 2>/dev/null || break
+        sleep 0.05
+    done
+    kill -0 "$pid" 2>/dev/null && complain "$*: it goes on after SIG$signal"
+    wait "$pid" || status=$?
+    pid=
+    exec 9<&-
+    [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat err)"
+    [ -z "$(find . -name '*.part')" ]
+}
+
+@test "signals are heard while nobody reads what is written: trajectories, labels, records, a log" {
+    mkfifo pipe
+    for signal in "TERM 143" "INT 130" "HUP 129"; do
+        # shellcheck disable=SC2086
+        stops_unread $signal synpo-gen-expert -o pipe
+    done
+    stops_unread TERM 143 bash -c 'exec synpo-gen-expert >pipe'
+    synpo-gen-expert -n 2000 >many.jsonl
+    stops_unread TERM 143 bash -c 'exec synpo-gen-expert --relabel <many.jsonl >pipe'
+    stops_unread TERM 143 synpo-eval -q -j 1 -c a.ckpt -p two.tsv -n 1000 --record pipe -o matrix
+    [ ! -e matrix ]
+    stops_unread TERM 143 bash -c 'exec synpo-eval -q -j 1 -c a.ckpt -p two.tsv -n 1000 --record - >pipe'
+    # The log is lost; what was learned is not.
+    stops_unread TERM 74 bash -c "exec synpo-train ${TINY[*]} -j 1 --batch-states 1 --running 1 -n 100000 --report 1 --log pipe --save saved -o out <e.jsonl"
+    [ "$(described saved .updates)" -gt 100 ]
+    cmp saved out
+}
+
 @test "a pipe is read and written whole, whoever opens it first" {
     mkfifo pipe
     (sleep 0.3; cat pairs.tsv >pipe) &
