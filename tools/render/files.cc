@@ -90,6 +90,9 @@ std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands) {
     if (first_bad_byte(file.label) != std::string::npos)
       fail(Exit::kUsage, "the label ", quoted(file.label),
            " is not UTF-8 text: give another with LABEL=", quoted(file.path));
+    if (file.label.size() > kLongestDrawn)
+      fail(Exit::kUsage, "the label ", quoted(file.label), " has ", file.label.size(), " bytes, expected at most ",
+           kLongestDrawn, ": give another with LABEL=", quoted(file.path));
     auto same =
         std::find_if(out.begin(), out.end(), [&](const LabelledFiles& other) { return other.label == file.label; });
     if (same == out.end()) same = out.insert(out.end(), {file.label, {}});
@@ -100,5 +103,7 @@ std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands) {
 
 const std::string& drawable(const std::string& text) {
   if (first_bad_byte(text) != std::string::npos) throw std::invalid_argument("expected UTF-8 text");
+  if (text.size() > kLongestDrawn)
+    throw std::invalid_argument(concat("expected at most ", kLongestDrawn, " bytes, not ", text.size()));
   return text;
 }

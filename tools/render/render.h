@@ -57,8 +57,9 @@ struct LabelledFiles {
 // kUsage for what can't be read so, and for labels that cannot be drawn.
 std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands);
 
-// The argument of an option that is drawn. Throws std::invalid_argument where it is not UTF-8 or has control
-// characters.
+// The argument of an option that is drawn. Throws std::invalid_argument where it is not UTF-8, has control characters
+// or more than kLongestDrawn bytes, each of which takes some kB to draw.
+constexpr size_t kLongestDrawn = 1000;
 const std::string& drawable(const std::string& text);
 // Takes a title from an option.
 inline auto drawn(std::string& title) {

@@ -89,15 +89,17 @@ const TextMask& Font::mask(const std::string& text, int size) const {
 }
 
 std::string Font::fitted(const std::string& text, int size, int width) const {
-  if (this->width(text, size) <= width) return text;
   const std::vector<size_t> starts = character_starts(text);
   const size_t characters = starts.size() - 1;
+  // Hardly any character is narrower than a pixel, and to measure takes thousands of bytes for each.
+  const size_t most = size_t(std::max(width, 0)) + 1;
+  if (characters <= most && this->width(text, size) <= width) return text;
   // Names that share a long beginning differ at their end, so both are kept.
   const auto shortened = [&](size_t kept) {
     const size_t tail = kept / 2, head = kept - tail;
     return text.substr(0, starts[head]) + kEllipsis + text.substr(starts[characters - tail]);
   };
-  size_t fits = 0, too_long = characters;
+  size_t fits = 0, too_long = std::min(characters, most);
   while (fits + 1 < too_long) {
     const size_t middle = (fits + too_long) / 2;
     (this->width(shortened(middle), size) <= width ? fits : too_long) = middle;

@@ -115,6 +115,13 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
         says "UTF-8"
     done
     fails 64 synpo-render map --title $'\xff'
+    # A byte of text takes some 6 kB to draw.
+    long=$(head -c 1001 /dev/zero | tr '\0' x)
+    fails 64 synpo-render heatmap --title "$long" m.tsv
+    says "expected at most 1000 bytes"
+    fails 64 synpo-render heatmap "$long=m.tsv"
+    says "expected at most 1000"
+    synpo-render heatmap --title "${long:1}" -o picture m.tsv
     for command in view episode embedding policy; do fails 64 synpo-render $command --title $'\xc3'; done
     cp m.tsv $'\xff.tsv'
     synpo-render heatmap $'\xff.tsv' >alone.png

@@ -25,6 +25,10 @@ TEST(Text, FittedKeepsBothEndsAndFits) {
     EXPECT_LE(font().width(fitted, 17), width);
   }
   EXPECT_EQ(font().fitted("map12", 17, 400), "map12");
+  // Measured at once, this would take gigabytes.
+  const std::string endless = font().fitted(std::string(1000000, 'x') + "end", 17, 200);
+  EXPECT_LE(font().width(endless, 17), 200);
+  EXPECT_TRUE(endless.ends_with("xend"));
   const std::string cut = font().fitted(name, 17, 150);
   EXPECT_EQ(cut.front(), 'k');
   EXPECT_EQ(cut.back(), '2');
