@@ -10,6 +10,34 @@
 namespace synpo {
 namespace {
 
+// A character of a cell in a tabular. In TeX's first encoding | < > " stand for others, two hyphens are a dash, and
+// what stands next to the end of a row may be taken for its argument.
+std::string latex_escaped(char c) {
+  switch (c) {
+    case '\\':
+      return "\\textbackslash{}";
+    case '|':
+      return "\\textbar{}";
+    case '<':
+      return "\\textless{}";
+    case '>':
+      return "\\textgreater{}";
+    case '"':
+      return "{''}";
+    case '`':
+      return "\\textasciigrave{}";
+    case '~':
+    case '^':
+      return concat('\\', c, "{}");
+    case '[':
+    case ']':
+    case '*':
+      return concat('{', c, '}');
+    default:
+      return std::string("&%$#_{}").find(c) != std::string::npos ? concat('\\', c) : std::string(1, c);
+  }
+}
+
 std::string escaped(const std::string& cell, TableFormat format) {
   std::string out;
   for (size_t i = 0; i < cell.size(); ++i) {
@@ -19,15 +47,12 @@ std::string escaped(const std::string& cell, TableFormat format) {
       out += format == TableFormat::kLatex ? "$\\pm$" : "\xc2\xb1";
       ++i;
     } else if (format == TableFormat::kMarkdown) {
-      if (std::string("|\\*_`<[").find(c) != std::string::npos) out += '\\';
+      if (std::string("|\\*_`<[&~$").find(c) != std::string::npos) out += '\\';
       out += c;
-    } else if (c == '\\') {
-      out += "\\textbackslash{}";
-    } else if (c == '~' || c == '^') {
-      out += concat('\\', c, "{}");
+    } else if (cell.compare(i, 2, "--") == 0) {
+      out += "-{}";
     } else {
-      if (std::string("&%$#_{}").find(c) != std::string::npos) out += '\\';
-      out += c;
+      out += latex_escaped(c);
     }
   }
   return out;

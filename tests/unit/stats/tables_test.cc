@@ -203,12 +203,18 @@ TEST(Text, TablesInEveryFormat) {
   EXPECT_EQ(table_text(rows, TableFormat::kMarkdown),
             "| method  |     seen % |\n| ------- | ---------: |\n| a\\_b\\|\xc3\xa9 | 85.0 \xc2\xb1 1.2 |\n| c       | "
             "         - |\n");
-  EXPECT_EQ(table_text(rows, TableFormat::kLatex),
-            "\\begin{tabular}{lr}\n\\toprule\nmethod & seen \\% \\\\\n\\midrule\na\\_b|\xc3\xa9 & 85.0 $\\pm$ 1.2 "
-            "\\\\\nc & - \\\\\n"
-            "\\bottomrule\n\\end{tabular}\n");
+  EXPECT_EQ(
+      table_text(rows, TableFormat::kLatex),
+      "\\begin{tabular}{lr}\n\\toprule\nmethod & seen \\% \\\\\n\\midrule\na\\_b\\textbar{}\xc3\xa9 & 85.0 $\\pm$ 1.2 "
+      "\\\\\nc & - \\\\\n"
+      "\\bottomrule\n\\end{tabular}\n");
   EXPECT_EQ(table_text({{"\\&%$#_{}~^"}}, TableFormat::kLatex).substr(28, 51),
             "\\textbackslash{}\\&\\%\\$\\#\\_\\{\\}\\~{}\\^{} \\\\\n\\midrule\n");
+  // In OT1 these would come out as other characters, dashes or arguments of what stands before.
+  EXPECT_EQ(table_text({{"[*]<|>\"`a-b--c---d"}}, TableFormat::kLatex).substr(28),
+            "{[}{*}{]}\\textless{}\\textbar{}\\textgreater{}{''}\\textasciigrave{}a-b-{}-c-{}-{}-d \\\\\n\\midrule\n"
+            "\\bottomrule\n\\end{tabular}\n");
+  EXPECT_EQ(table_text({{"a&lt;~~$x$"}}, TableFormat::kMarkdown).substr(0, 17), "| a\\&lt;\\~\\~\\$x\\$");
 }
 
 TEST(MethodTable, HandComputed) {
