@@ -18,7 +18,7 @@ struct ObservationSpec {
   // Pictures: uint8 [side, side, kHistory] of indices into the palette, oldest first. Before the first step the earlier
   // pictures are missing: 0.
   int side = 0;
-  std::vector<Rgb> palette;
+  std::vector<Rgb> palette = {};
 
   // Features: float [kHistory, view], oldest first, a missing view zero; then kObjectFloats more, the first of which is
   // the number, from 0 to objects - 1, of a thing that no view shows, the rest zero.

@@ -62,33 +62,32 @@ struct Environment {
 // Where agent and things are when an episode starts, as a trajectory holds it.
 using StartPlaces = std::map<std::string, std::pair<int, int>>;
 
+// All that never changes in a world.
+struct WorldFacts {
+  std::string name;  // as the files have it: "gridworld"
+  int rules = 1;     // version of the rules, which trajectories and checkpoints carry
+  std::vector<Environment> environments = {};
+  std::vector<std::string> tasks = {}, actions = {};  // names
+  int moves = 0;                                      // the first so many actions only move the agent
+  size_t state_bytes = WorldState::kMostBytes;        // of a WorldState, as checkpoints hold it
+  ObservationSpec observation = {};
+  // The extractor that made the features, "name@hash": a policy goes with features of one extractor alone. Empty where
+  // observations are pictures.
+  std::string extractor = "";
+};
+
 class World {
  public:
+  // Throws kData for two environments of one name.
+  explicit World(WorldFacts facts);
   virtual ~World() = default;
+  World(World&&) = default;
+  World& operator=(World&&) = default;
 
-  virtual const std::string& name() const = 0;  // as the files have it: "gridworld"
-  virtual int rules() const = 0;                // version of the rules, which trajectories and checkpoints carry
-  virtual const std::vector<Environment>& environments() const = 0;
-  virtual const std::vector<std::string>& task_names() const = 0;
-  // The first moves() of the actions only move the agent.
-  virtual const std::vector<std::string>& action_names() const = 0;
-  virtual int moves() const = 0;
-
-  // Of a WorldState, as checkpoints hold it: at most WorldState::kMostBytes.
-  virtual size_t state_bytes() const = 0;
   virtual WorldState reset(int env, Random& random) const = 0;
   virtual WorldStep step(EnvTask pair, WorldState& state, int action) const = 0;
   // The planner's action; ties go to the first in the order of the actions.
   virtual int expert(EnvTask pair, const WorldState& state) const = 0;
-  // Undiscounted return in hundredths of each action [actions] and the planner's after it, without the step limit.
-  virtual void action_values(EnvTask pair, const WorldState& state, int* cents) const = 0;
-  // Whether something could be taken or put here, rightly or wrongly.
-  virtual bool at_choice(EnvTask pair, const WorldState& state) const = 0;
-
-  virtual const ObservationSpec& observation_spec() const = 0;
-  // The extractor that made the features, "name@hash": a policy goes with features of one extractor alone. Empty where
-  // observations are pictures.
-  virtual std::string extractor() const { return ""; }
   // Writes observation_spec().bytes(). `window` is how far the agent sees, in the world's own measure, as trajectories
   // and checkpoints carry it; a world in which that never changes passes over it.
   virtual void observe(int env, const StateHistory& history, int window, uint8_t* observation) const = 0;
@@ -98,6 +97,23 @@ class World {
   virtual WorldState start_state(int env, const StartPlaces& places) const = 0;
   // Whether this can be a state of a running episode: what comes from a file may be no such state.
   virtual bool valid(EnvTask pair, const WorldState& state) const = 0;
+
+  // Undiscounted return in hundredths of each action [actions] and the planner's after it, without the step limit.
+  // Plays them all, where a world does not know better; throws kInternal where that does not end.
+  virtual void action_values(EnvTask pair, const WorldState& state, int* cents) const;
+  // Whether something could be taken or put here, rightly or wrongly. Where a world does not know better: whether an
+  // action that does not only move ends the episode or changes the state.
+  virtual bool at_choice(EnvTask pair, const WorldState& state) const;
+
+  const std::string& name() const { return facts_.name; }
+  int rules() const { return facts_.rules; }
+  const std::vector<Environment>& environments() const { return facts_.environments; }
+  const std::vector<std::string>& task_names() const { return facts_.tasks; }
+  const std::vector<std::string>& action_names() const { return facts_.actions; }
+  int moves() const { return facts_.moves; }
+  size_t state_bytes() const { return facts_.state_bytes; }
+  const ObservationSpec& observation_spec() const { return facts_.observation; }
+  const std::string& extractor() const { return facts_.extractor; }
 
   size_t observation_size() const { return observation_spec().bytes(); }
   int envs() const { return int(environments().size()); }
@@ -110,6 +126,14 @@ class World {
   uint64_t pair_number(EnvTask pair) const { return uint64_t(pair.env) * task_names().size() + uint64_t(pair.task); }
   // The kind of a step whose right action is `label`.
   StepKind kind(EnvTask pair, const WorldState& state, int label) const;
+
+ protected:
+  // Throws kData for a name that is there already.
+  void add_environment(Environment environment);
+
+ private:
+  WorldFacts facts_;
+  std::map<std::string, int> env_numbers_;  // by name
 };
 
 }  // namespace synpo

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <set>
 #include <utility>
 
 #include "base/error.h"
+#include "world/grid/gridworld.h"
 #include "world/grid/view.h"
 
 namespace synpo {
@@ -28,30 +28,26 @@ uint8_t start_cell(const Maze& maze, const StartPlaces& places, const std::strin
   return uint8_t(row * kGridSide + column);
 }
 
+WorldFacts grid_facts() {
+  return {.name = "gridworld",
+          .rules = kGridRules,
+          .tasks = grid_task_names(),
+          .actions = {kGridActionNames, kGridActionNames + kGridActions},
+          .moves = kPick,
+          .state_bytes = kGridStateBytes,
+          .observation = grid_observation_spec()};
+}
+
 }  // namespace
 
-GridSet::GridSet(std::vector<Maze> mazes) : mazes_(std::move(mazes)) {
-  std::set<std::string> names;
+GridSet::GridSet(std::vector<Maze> mazes) : World(grid_facts()), mazes_(std::move(mazes)) {
   for (const Maze& maze : mazes_) {
-    if (!names.insert(maze.name).second) fail(Exit::kData, "two environments are named ", quoted(maze.name));
+    add_environment({maze.name, maze.hash, maze.canonical_text()});
     planners_.emplace_back(maze);
-    environments_.push_back({maze.name, maze.hash, maze.canonical_text()});
   }
 }
 
 GridSet GridSet::open(const std::string& world) { return GridSet(open_mazes(world)); }
-
-const std::string& GridSet::name() const {
-  static const std::string name = "gridworld";
-  return name;
-}
-
-const std::vector<std::string>& GridSet::task_names() const { return grid_task_names(); }
-
-const std::vector<std::string>& GridSet::action_names() const {
-  static const std::vector<std::string> names(kGridActionNames, kGridActionNames + kGridActions);
-  return names;
-}
 
 WorldState GridSet::reset(int env, Random& random) const { return to_world_state(grid_reset(mazes_[env], random)); }
 
@@ -74,8 +70,6 @@ void GridSet::action_values(EnvTask pair, const WorldState& state, int* cents) c
 bool GridSet::at_choice(EnvTask, const WorldState& state) const {
   return treasure_under_agent(to_grid_state(state).now) >= 0;
 }
-
-const ObservationSpec& GridSet::observation_spec() const { return grid_observation_spec(); }
 
 void GridSet::observe(int env, const StateHistory& history, int window, uint8_t* observation) const {
   draw_history(mazes_[env], history, window, observation);

@@ -1,16 +1,13 @@
 // GridWorld as a World: mazes, their planners, and tasks.
 #pragma once
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/random.h"
-#include "world/grid/gridworld.h"
 #include "world/grid/maze.h"
 #include "world/grid/planner.h"
 #include "world/grid/task.h"
-#include "world/observation.h"
 #include "world/world.h"
 
 namespace synpo {
@@ -31,21 +28,12 @@ class GridSet : public World {
   const Planner& planner(int env) const { return planners_[env]; }
   const std::vector<Task>& tasks() const { return grid_tasks(); }
 
-  const std::string& name() const override;
-  int rules() const override { return kGridRules; }
-  const std::vector<Environment>& environments() const override { return environments_; }
-  const std::vector<std::string>& task_names() const override;
-  const std::vector<std::string>& action_names() const override;
-  int moves() const override { return kPick; }
-
-  size_t state_bytes() const override { return kGridStateBytes; }
   WorldState reset(int env, Random& random) const override;
   WorldStep step(EnvTask pair, WorldState& state, int action) const override;
   int expert(EnvTask pair, const WorldState& state) const override;
   void action_values(EnvTask pair, const WorldState& state, int* cents) const override;
   bool at_choice(EnvTask pair, const WorldState& state) const override;
 
-  const ObservationSpec& observation_spec() const override;
   // `window` is the radius of what is seen.
   void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
 
@@ -57,7 +45,6 @@ class GridSet : public World {
   const Task& task(EnvTask pair) const { return tasks()[pair.task]; }
   std::vector<Maze> mazes_;
   std::vector<Planner> planners_;
-  std::vector<Environment> environments_;
 };
 
 // The world as what it is. Throws kUsage, naming `what` for it is needed, for another.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <string>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -11,7 +12,8 @@
 
 namespace synpo {
 
-KitchenSet::KitchenSet(const std::vector<Kitchen>& kitchens) {
+KitchenSet::KitchenSet(const std::vector<Kitchen>& kitchens)
+    : KitchenWorld(kExtractorName + ('@' + hex(extractor_hash()))) {
   for (const Kitchen& kitchen : kitchens) {
     add_environment({kitchen.name, kitchen.hash, kitchen.text});
     plans_.push_back(std::make_unique<const Plan>(kitchen));
@@ -21,8 +23,6 @@ KitchenSet::KitchenSet(const std::vector<Kitchen>& kitchens) {
 KitchenSet::KitchenSet() : KitchenSet(builtin_kitchens()) {}
 
 WorldState KitchenSet::reset(int env, Random& random) const { return pack(kitchen_reset(tables(env), random)); }
-
-std::string KitchenSet::extractor() const { return kExtractorName + ('@' + hex(extractor_hash())); }
 
 KitchenFrame KitchenSet::frame(int env, const WorldState& state) const {
   const KitchenState at = unpack(state);

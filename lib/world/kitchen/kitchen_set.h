@@ -3,7 +3,6 @@
 #pragma once
 #include <cstddef>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "base/random.h"
@@ -27,7 +26,6 @@ class KitchenSet : public KitchenWorld {
   KitchenSet();
 
   WorldState reset(int env, Random& random) const override;
-  std::string extractor() const override;
 
   const KitchenSolids& solids(int env) const { return plans_[size_t(env)]->solids; }
   const KitchenTables& tables(int env) const { return plans_[size_t(env)]->planned.tables; }

@@ -1,10 +1,12 @@
 #include "world/kitchen/kitchen_world.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 
 #include "base/error.h"
 #include "world/kitchen/view/features.h"
+#include "world/observation.h"
 
 namespace synpo {
 namespace {
@@ -40,31 +42,21 @@ uint16_t start_pose(const KitchenTables& tables, const StartPlaces& places) {
        ", with which no episode starts");
 }
 
+WorldFacts kitchen_facts(const std::string& extractor) {
+  WorldFacts facts = {.name = "kitchen",
+                      .rules = kKitchenRules,
+                      .actions = {kKitchenActionNames, kKitchenActionNames + kKitchenActions},
+                      .moves = kKitchenMoves,
+                      .state_bytes = kKitchenStateBytes,
+                      .observation = {.sight = Sight::kFeatures, .view = kViewFeatures, .objects = kKitchenObjects + 1},
+                      .extractor = extractor};
+  for (int task = 0; task < kKitchenTasks; ++task) facts.tasks.push_back(kitchen_task(task).name());
+  return facts;
+}
+
 }  // namespace
 
-void KitchenWorld::add_environment(const Environment& environment) {
-  if (env_index(environment.name) >= 0) fail(Exit::kData, "two environments are named ", quoted(environment.name));
-  environments_.push_back(environment);
-}
-
-const std::string& KitchenWorld::name() const {
-  static const std::string name = "kitchen";
-  return name;
-}
-
-const std::vector<std::string>& KitchenWorld::task_names() const {
-  static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (int task = 0; task < kKitchenTasks; ++task) all.push_back(kitchen_task(task).name());
-    return all;
-  }();
-  return names;
-}
-
-const std::vector<std::string>& KitchenWorld::action_names() const {
-  static const std::vector<std::string> names(kKitchenActionNames, kKitchenActionNames + kKitchenActions);
-  return names;
-}
+KitchenWorld::KitchenWorld(const std::string& extractor) : World(kitchen_facts(extractor)) {}
 
 WorldStep KitchenWorld::step(EnvTask pair, WorldState& state, int action) const {
   KitchenState at = unpack(state);
@@ -89,11 +81,6 @@ bool KitchenWorld::at_choice(EnvTask pair, const WorldState& state) const {
   const KitchenTables& tables = planned_for(pair.env, at).tables;
   if (at.hand == kEmptyHand) return object_in_reach(tables, at.pose, at.doors, at.slots) >= 0;
   return receptacle_in_reach(tables, at.pose, at.doors) >= 0;
-}
-
-const ObservationSpec& KitchenWorld::observation_spec() const {
-  static const ObservationSpec spec = {Sight::kFeatures, 0, {}, kViewFeatures, kKitchenObjects + 1};
-  return spec;
 }
 
 void KitchenWorld::observe(int env, const StateHistory& history, int, uint8_t* observation) const {

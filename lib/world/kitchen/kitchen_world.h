@@ -2,38 +2,26 @@
 // tables and features come from, KitchenSet (plans) and RecordedKitchens (files) say.
 #pragma once
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "world/kitchen/geometry/kitchen.h"
 #include "world/kitchen/geometry/tables.h"
 #include "world/kitchen/planner.h"
 #include "world/kitchen/rules.h"
-#include "world/observation.h"
 #include "world/world.h"
 
 namespace synpo {
 
 class KitchenWorld : public World {
  public:
-  const std::string& name() const override;
-  int rules() const override { return kKitchenRules; }
-  const std::vector<Environment>& environments() const override { return environments_; }
-  const std::vector<std::string>& task_names() const override;
-  const std::vector<std::string>& action_names() const override;
-  int moves() const override { return kKitchenMoves; }
-
-  size_t state_bytes() const override { return kKitchenStateBytes; }
   WorldStep step(EnvTask pair, WorldState& state, int action) const override;
   int expert(EnvTask pair, const WorldState& state) const override;
   void action_values(EnvTask pair, const WorldState& state, int* cents) const override;
   bool at_choice(EnvTask pair, const WorldState& state) const override;
 
   // Features, and the number of the object that is in the hand now, kEmptyHand for none. `window` means nothing here.
-  const ObservationSpec& observation_spec() const override;
   void observe(int env, const StateHistory& history, int window, uint8_t* observation) const override;
 
   // "agent": row, column; "view": heading, horizon in degrees; and each object's name: row, column.
@@ -42,6 +30,8 @@ class KitchenWorld : public World {
   bool valid(EnvTask pair, const WorldState& state) const override;
 
  protected:
+  explicit KitchenWorld(const std::string& extractor);
+
   // The tables of a layout and the planner over them, in one place in memory as it holds on to them.
   struct PlannedLayout {
     PlannedLayout(const std::string& name, KitchenTables all) : tables(std::move(all)), planner(name, tables) {}
@@ -59,13 +49,8 @@ class KitchenWorld : public World {
   using Places = std::array<std::pair<int, int>, kKitchenObjects>;
   virtual void place_objects(int env, const Places& places, KitchenState& state) const = 0;
 
-  // Throws kData for a name that is there already.
-  void add_environment(const Environment& environment);
-
  private:
   const PlannedLayout& planned_for(int env, const KitchenState& state) const { return planned(env, state.layout); }
-
-  std::vector<Environment> environments_;
 };
 
 }  // namespace synpo

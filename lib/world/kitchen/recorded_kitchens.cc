@@ -89,17 +89,19 @@ void RecordedKitchens::Prepared::check_layout(int layout) const {
     }
 }
 
-RecordedKitchens::RecordedKitchens(std::vector<RecordedKitchen> kitchens) {
+RecordedKitchens::RecordedKitchens(std::vector<RecordedKitchen> kitchens)
+    : KitchenWorld(kitchens.empty() ? "" : kitchens.front().extractor) {
   for (RecordedKitchen& kitchen : kitchens) {
     add_environment({kitchen.name, kitchen.hash, ""});
-    if (!all_.empty() && kitchen.extractor != extractor())
+    if (kitchen.extractor != extractor())
       fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ",
            quoted(extractor()), " as of ", environments()[0].name);
     all_.push_back(std::make_shared<const Prepared>(std::move(kitchen)));
   }
 }
 
-RecordedKitchens::RecordedKitchens(const RecordedKitchens& from, const std::vector<int>& envs) {
+RecordedKitchens::RecordedKitchens(const RecordedKitchens& from, const std::vector<int>& envs)
+    : KitchenWorld(from.extractor()) {
   for (const int env : envs) {
     add_environment(from.environments()[size_t(env)]);
     all_.push_back(from.all_[size_t(env)]);

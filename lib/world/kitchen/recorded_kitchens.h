@@ -39,7 +39,6 @@ class RecordedKitchens : public KitchenWorld {
 
   // A layout and a start pose, all alike likely; doors closed, hand empty.
   WorldState reset(int env, Random& random) const override;
-  std::string extractor() const override { return all_.front()->kitchen.extractor; }
   bool valid(EnvTask pair, const WorldState& state) const override;
 
   const KitchenTables& tables(int env, int layout) const { return planned(env, layout).tables; }

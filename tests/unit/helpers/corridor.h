@@ -1,5 +1,10 @@
 // A world as small as can be: a corridor of six cells, and a task at either end.
 #pragma once
+#include <cstdint>
+#include <utility>
+
+#include "base/random.h"
+#include "world/observation.h"
 #include "world/world.h"
 
 namespace synpo {
@@ -7,14 +12,17 @@ namespace synpo {
 class Corridor : public World {
  public:
   static constexpr int kCells = 6;
-  const std::string& name() const override { return name_; }
-  int rules() const override { return 1; }
-  const std::vector<Environment>& environments() const override { return environments_; }
-  const std::vector<std::string>& task_names() const override { return task_names_; }
-  const std::vector<std::string>& action_names() const override { return action_names_; }
-  int moves() const override { return 2; }
+  static WorldFacts facts() {
+    return {.name = "corridor",
+            .environments = {{"short", 1, "short"}},
+            .tasks = {"left", "right"},
+            .actions = {"LEFT", "RIGHT"},
+            .moves = 2,
+            .state_bytes = 1,
+            .observation = {.side = kCells, .palette = {{0, 0, 0}, {60, 60, 60}, {250, 250, 0}}}};
+  }
+  explicit Corridor(WorldFacts facts = Corridor::facts()) : World(std::move(facts)) {}
 
-  size_t state_bytes() const override { return 1; }
   WorldState reset(int, Random& random) const override { return at(1 + int(random.below(kCells - 2))); }
   WorldStep step(EnvTask pair, WorldState& state, int action) const override {
     state = at(state.bytes[0] + (action == 1 ? 1 : -1), state.steps + 1);
@@ -23,14 +31,6 @@ class Corridor : public World {
     return {success ? 99 : -1, ends, !ends && state.steps >= kStepLimit, success, ends && !success};
   }
   int expert(EnvTask pair, const WorldState&) const override { return pair.task; }
-  void action_values(EnvTask pair, const WorldState& state, int* cents) const override {
-    const int steps = pair.task == 1 ? kCells - 1 - state.bytes[0] : state.bytes[0];
-    cents[pair.task] = 100 - steps;
-    cents[1 - pair.task] = 100 - steps - 2;
-  }
-  bool at_choice(EnvTask, const WorldState&) const override { return false; }
-
-  const ObservationSpec& observation_spec() const override { return spec_; }
   void observe(int, const StateHistory& history, int, uint8_t* observation) const override {
     for (int i = 0; i < kCells * kCells * kHistory; ++i) {
       const int cell = i / kHistory % kCells, moment = i % kHistory;
@@ -49,10 +49,6 @@ class Corridor : public World {
     state.steps = uint16_t(steps);
     return state;
   }
-  std::string name_ = "corridor";
-  std::vector<Environment> environments_ = {{"short", 1, "short"}};
-  std::vector<std::string> task_names_ = {"left", "right"}, action_names_ = {"LEFT", "RIGHT"};
-  ObservationSpec spec_ = {Sight::kPictures, kCells, {{0, 0, 0}, {60, 60, 60}, {250, 250, 0}}};
 };
 
 }  // namespace synpo

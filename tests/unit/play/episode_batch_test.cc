@@ -83,12 +83,18 @@ TEST(EpisodeBatch, BytesOfGridWorldAreThoseOfTheFirstFiles) {
 // More tasks than a byte counts, and states as large as can be.
 class LargeCorridor : public Corridor {
  public:
-  const std::vector<std::string>& task_names() const override { return names_; }
-  size_t state_bytes() const override { return WorldState::kMostBytes; }
+  LargeCorridor() : Corridor(large_facts()) {}
   bool valid(EnvTask pair, const WorldState& state) const override {
     return Corridor::valid(pair, state) && state.bytes.back() == 77;
   }
-  std::vector<std::string> names_ = std::vector<std::string>(300, "task");
+
+ private:
+  static WorldFacts large_facts() {
+    WorldFacts large = facts();
+    large.tasks.assign(300, "task");
+    large.state_bytes = WorldState::kMostBytes;
+    return large;
+  }
 };
 
 TEST(EpisodeBatch, ComesBackInEveryWorld) {
