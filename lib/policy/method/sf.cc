@@ -23,7 +23,7 @@ BatchNeeds Sf<T>::needs() const {
 
 template <class T>
 std::vector<typename Policy<T>::OwnGroup> Sf<T>::own_groups() const {
-  return {{ParameterGroup::kHeads, {"phi."}}};
+  return {{ParameterGroup::kHeads, {"phi.", "psi."}}};
 }
 
 template <class T>

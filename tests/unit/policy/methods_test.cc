@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -68,6 +69,16 @@ class Methods : public testing::TestWithParam<Variant> {
   }
 };
 INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const auto& info) { return info.param.name; });
+
+TEST_P(Methods, EveryTensorServesOneEnd) {
+  const Network<float> net = network<float>();
+  std::map<std::string, int> ends;
+  for (const ParameterGroup group :
+       {ParameterGroup::kEncoder, ParameterGroup::kEmbeddings, ParameterGroup::kRecognisers,
+        ParameterGroup::kCoefficients, ParameterGroup::kHeads})
+    for (const TensorInfo* tensor : net.policy->group(group)) ++ends[tensor->name];
+  for (const TensorInfo& tensor : net.policy->parameters().tensors()) EXPECT_EQ(ends[tensor.name], 1) << tensor.name;
+}
 
 constexpr double kDropout = 0.3;
 
