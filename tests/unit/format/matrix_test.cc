@@ -1,11 +1,33 @@
 #include "format/matrix.h"
 
+#include <gtest/gtest.h>
+
 #include <cmath>
+#include <cstring>
 
 #include "helpers/table_helpers.h"
+#include "helpers/temporary.h"
 
 namespace synpo {
 namespace {
+
+constexpr char kGolden[] = "tests/data/v1/";
+
+TEST(GoldenV1, Matrix) {
+  Input input(std::string(kGolden) + "matrix.tsv");
+  const Matrix matrix = read_matrix(input);
+  ASSERT_EQ(matrix.rows.size(), 4u);
+  EXPECT_TRUE(matrix.has_part);
+  const MatrixRow& row = matrix.rows[1];
+  EXPECT_EQ(row.run, "e0507b4a3a05fe54");
+  EXPECT_EQ(row.env + " " + row.task, "map1 B-G");
+  EXPECT_EQ(row.window, 2);
+  EXPECT_EQ(row.successes + 10 * row.wrong + 100 * row.timeouts + 1000 * row.episodes, 3111);
+  EXPECT_EQ(row.reward, -1.55);
+  EXPECT_EQ(row.length, 355);
+  EXPECT_TRUE(matrix.rows[0].seen);
+  EXPECT_EQ(matrix.rows[3].part, "rest");
+}
 
 Matrix matrix_of(const std::string& text) {
   return read_text(text, [](Input& input) { return read_matrix(input); });

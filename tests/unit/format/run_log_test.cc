@@ -1,14 +1,81 @@
+#include "format/run_log.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <string>
 #include <vector>
 
-#include "format/run_log.h"
 #include "helpers/table_helpers.h"
+#include "helpers/temporary.h"
 
 namespace synpo {
 namespace {
+
+struct RunLog : TsvLog {
+  RunLog(const std::string& path, bool append) : TsvLog(path, append, run_log_columns()) {}
+  void write(const RunLogRow& row) { TsvLog::write(run_log_values(row)); }
+};
+
+TEST(RunLog, WritesARowAReport) {
+  const TemporaryFolder folder;
+  {
+    RunLog log(folder.file("log"), false);
+    RunLogRow row;
+    row.update = 100;
+    row.states = 51200;
+    row.trajectories = 2100;
+    row.seconds = 1.5;
+    row.loss = 2.25;
+    row.right[0] = 0.5;
+    row.right[1] = std::nan("");
+    log.write(row);
+    EXPECT_EQ(contents(folder.file("log"))
+                  .find("100\t51200\t2100\t1.5\t0\t0\t2.25\t0\t0\t0\t0\t0.5\tNA\t0\t0\tNA\tNA\tNA\tNA\n"),
+              contents(folder.file("log")).find('\n') + 1);
+    row.evaluation = {0.25, -1, 0.125, -2};
+    log.write(row);
+  }
+  const std::string text = contents(folder.file("log"));
+  EXPECT_TRUE(text.starts_with("update\tstates\ttrajectories\tseconds\t"));
+  EXPECT_TRUE(text.ends_with("\t0.25\t-1\t0.125\t-2\n"));
+  // As many fields in every row.
+  int tabs[3] = {}, line = 0;
+  for (const char c : text) {
+    tabs[line] += c == '\t';
+    line += c == '\n' && line < 2;
+  }
+  EXPECT_EQ(tabs[0], 18);
+  EXPECT_EQ(tabs[1], 18);
+  EXPECT_EQ(tabs[2], 18);
+}
+
+TEST(RunLog, IsContinuedOrWrittenAnew) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("log");
+  RunLog(path, true).write({});
+  const std::string once = contents(path), header = once.substr(0, once.find('\n') + 1);
+  EXPECT_TRUE(header.starts_with("update\t"));
+  RunLog(path, true).write({});
+  EXPECT_EQ(contents(path), once + once.substr(header.size()));
+  RunLog(path, false).write({});
+  EXPECT_EQ(contents(path), once);
+}
+
+TEST(RunLog, NamesWhatFails) {
+  const TemporaryFolder folder;
+  RunLog("", false).write({});
+  RunLog full("/dev/full", false);
+  EXPECT_FALSE(full.failed());
+  full.check();
+  full.write({});
+  EXPECT_TRUE(full.failed());
+  full.write({});
+  EXPECT_EQ(thrown([&] { full.check(); }), "74 cannot write '/dev/full': No space left on device");
+  EXPECT_EQ(thrown([&] { RunLog none(folder.file("a/b"), false); }),
+            "73 cannot create '" + folder.file("a/b") + "': No such file or directory");
+}
 
 std::string log_text(const std::string& rows) {
   return "update\tstates\tseconds\tstates_per_s\tpolicy\tseen_success\n" + rows;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "world/kitchen/geometry/make_tables.h"
+#include "world/kitchen/kitchen_set.h"
 #include "world/kitchen/rules.h"
 
 namespace synpo {
@@ -22,6 +23,12 @@ inline const char* const kSmallPlan =
     "##########\n";
 
 inline Kitchen small_kitchen() { return parse_kitchen("small", kSmallPlan, "small.txt"); }
+
+// All that are built in.
+inline const KitchenSet& all_kitchens() {
+  static const KitchenSet kitchens;
+  return kitchens;
+}
 
 // Position of a pose, or -1.
 inline int pose_at(const KitchenTables& tables, int row, int column, int heading, int horizon) {

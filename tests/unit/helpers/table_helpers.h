@@ -10,10 +10,15 @@
 
 #include "base/error.h"
 #include "base/files/io.h"
+#include "helpers/temporary.h"
 
 namespace synpo {
 
-inline std::string temporary_path() { return testing::TempDir() + "synpo_table_" + std::to_string(getpid()) + ".tsv"; }
+// In a folder of this process alone, which is gone at its end.
+inline std::string temporary_path() {
+  static const TemporaryFolder folder;
+  return folder.file("table.tsv");
+}
 
 // The result of `read` for a file that holds `text`.
 template <class Read>
@@ -51,6 +56,17 @@ inline std::string thrown(const std::function<void()>& work) {
     return std::to_string(int(error.code())) + " " + message;
   }
   return "nothing thrown";
+}
+
+// The message of what `work` throws, which is wrong data; "no error" otherwise.
+inline std::string message_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), Exit::kData);
+    return error.what();
+  }
+  return "no error";
 }
 
 // Whether it fails, and for this cause.

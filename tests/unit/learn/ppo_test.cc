@@ -1,66 +1,15 @@
+#include "learn/ppo/ppo.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "helpers/numbers.h"
 #include "helpers/policy_fixture.h"
-#include "learn/ppo/gae.h"
-#include "learn/ppo/ppo.h"
-#include "nn/rmsprop.h"
 #include "policy/method/encoded_policy.h"
 #include "policy/method/registry.h"
 
 namespace synpo {
 namespace {
-
-constexpr StepEnd kOn = StepEnd::kGoesOn, kEnd = StepEnd::kTerminated, kCut = StepEnd::kTruncated;
-
-TEST(Gae, IsTheHandComputedOneWithinAnEpisode) {
-  // gamma 0.5, lambda 0.5, one lane, three steps, V after the last 8.
-  const float reward[] = {1, 2, 3}, value[] = {4, 2, 6}, cut[] = {0, 0, 0}, last[] = {8};
-  const StepEnd end[] = {kOn, kOn, kOn};
-  // delta_2 = 3 + 4 - 6 = 1; delta_1 = 2 + 3 - 2 = 3; delta_0 = 1 + 1 - 4 = -2.
-  const std::vector<float> want = {-2 + 0.25f * 3.25f, 3 + 0.25f, 1};
-  EXPECT_EQ(advantages({3, 1, reward, value, end, cut, last}, {0.5, 0.5}), want);
-}
-
-TEST(Gae, NothingComesFromBehindAnEnd) {
-  // Two lanes side by side: one is terminated, one cut, at their second of three steps.
-  const float reward[] = {1, 1, 2, 2, 3, 3}, value[] = {4, 4, 2, 2, 6, 6}, last[] = {8, 8};
-  const float cut[] = {99, 99, 99, 10, 99, 99};  // read where a step is cut alone
-  const StepEnd end[] = {kOn, kOn, kEnd, kCut, kOn, kOn};
-  // Terminated: delta_1 = 2 - 2 = 0. Cut: delta_1 = 2 + 0.5 * 10 - 2 = 5. delta_0 = -2 and delta_2 = 1 in both.
-  const std::vector<float> want = {-2, -2 + 0.25f * 5, 0, 5, 1, 1};
-  EXPECT_EQ(advantages({3, 2, reward, value, end, cut, last}, {0.5, 0.5}), want);
-}
-
-TEST(Gae, WithLambdaOneTheReturnIsTheDiscountedSum) {
-  const float reward[] = {1, 2, 4}, value[] = {7, -3, 5}, cut[] = {0, 0, 0}, last[] = {0};
-  const StepEnd end[] = {kOn, kOn, kEnd};
-  const std::vector<float> got = advantages({3, 1, reward, value, end, cut, last}, {0.5, 1});
-  EXPECT_FLOAT_EQ(got[0] + value[0], 1 + 0.5f * 2 + 0.25f * 4);
-}
-
-TEST(RmsProp, IsTheHandComputedStep) {
-  Parallel parallel(1);
-  const double gradient[] = {6, -2};
-  double parameter[] = {2, 0.5}, v[] = {0, 4};
-  rmsprop_step(parallel, {0.1, 0.75, 0.5, 0.5}, 2, 0.5, gradient, parameter, v);
-  // g = 0.5 * 6 + 0.5 * 2 = 4, v = 0.25 * 16 = 4; g = -1 + 0.25 = -0.75, v = 0.75 * 4 + 0.25 * 0.5625 = 3.140625.
-  EXPECT_DOUBLE_EQ(v[0], 4);
-  EXPECT_DOUBLE_EQ(parameter[0], 2 - 0.1 * 4 / 2.5);
-  EXPECT_DOUBLE_EQ(v[1], 3.140625);
-  EXPECT_DOUBLE_EQ(parameter[1], 0.5 + 0.1 * 0.75 / (std::sqrt(3.140625) + 0.5));
-}
-
-TEST(RmsProp, LengthsAndClippingDoNotDependOnThreads) {
-  const std::vector<float> values = random_values<float>(200000, 3);
-  Parallel one(1), two(2);
-  EXPECT_EQ(sum_of_squares(one, values.size(), values.data()), sum_of_squares(two, values.size(), values.data()));
-  EXPECT_NEAR(sum_of_squares(one, values.size(), values.data()), inner_product(values, values), 1e-6);
-  EXPECT_EQ(clip_factor(0.4, 0.5), 1);
-  EXPECT_EQ(clip_factor(2, 0.5), 0.25);
-}
 
 // --- frozen statistics, and objectives of one's own
 
@@ -118,7 +67,7 @@ TEST(Objective, AStepUnderFrozenStatisticsScoresAsInferenceDoes) {
   }
 }
 
-TEST(Objective, AStepFromPsiIsTheStepBehindTheEncoder) {
+TEST(Objective, AStepFromPsiIsTheStepAfterTheEncoder) {
   const PolicyShape shape = tiny_shape(false);
   Network<float> whole(shape), from_psi(shape);
   for (Network<float>* net : {&whole, &from_psi}) net->initialise();
@@ -160,7 +109,7 @@ Model small_model(const World& world, const std::string& method) {
 
 std::string bytes(const Ppo& run) { return format_checkpoint(run.checkpoint(true)); }
 
-TEST(Ppo, TheFirstMinibatchBehindARolloutHasRatioOneAndNoDivergence) {
+TEST(Ppo, TheFirstMinibatchAfterARolloutHasRatioOneAndNoDivergence) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(2);
   for (const std::string& method : method_names()) {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 
 #include "helpers/policy_fixture.h"
@@ -68,6 +67,7 @@ class Methods : public testing::TestWithParam<Variant> {
     return net;
   }
 };
+
 INSTANTIATE_TEST_SUITE_P(All, Methods, testing::ValuesIn(kVariants), [](const auto& info) { return info.param.name; });
 
 TEST_P(Methods, EveryTensorServesOneEnd) {
@@ -143,7 +143,7 @@ TEST_P(Methods, OneAndTwoThreadsGiveTheSameBits) {
   }
 }
 
-TEST_P(Methods, ABatchBehindAnotherIsAsIfItWereAlone) {
+TEST_P(Methods, ABatchAfterAnotherIsAsIfItWereAlone) {
   // Memory that an earlier, larger step left must not show.
   const RandomSteps<float> large(70, GetParam().shape(), 4), small(9, GetParam().shape(), 5);
   Parallel parallel(2);
@@ -202,6 +202,7 @@ TEST_P(Methods, StartsAsToldByTheSeed) {
 
 // With the identity for phi the general form is the direct one.
 class OneHot : public testing::TestWithParam<std::string> {};
+
 INSTANTIATE_TEST_SUITE_P(Methods, OneHot, testing::Values("synpo", "mtl"), [](const auto& info) { return info.param; });
 
 TEST_P(OneHot, GeneralFormIsTheDirectForm) {
@@ -228,175 +229,6 @@ TEST_P(OneHot, GeneralFormIsTheDirectForm) {
         << tensor.name;
   EXPECT_LT(relative_error(general.infer(parallel, steps.batch(), 32), direct.infer(parallel, steps.batch(), 32)),
             1e-12);
-}
-
-// ModuleNet with modules that let the seam through: a score is what the mask leaves of 1.
-struct OpenSeam {
-  OpenSeam() {
-    net.initialise();
-    for (int task = 0; task < shape.tasks; ++task) {
-      const std::string out = "module.task" + std::to_string(task) + ".out.";
-      std::fill_n(net.parameter(out + "weight"), shape.head_hidden * shape.seam, 0.0);
-      std::fill_n(net.parameter(out + "bias"), shape.seam, 1.0);
-    }
-    for (int env = 0; env < shape.envs; ++env) {
-      const std::string module = "module.env" + std::to_string(env);
-      double *hidden = net.parameter(module + ".hidden.weight"), *out = net.parameter(module + ".out.weight");
-      std::fill_n(hidden, shape.seam * shape.head_hidden, 0.0);
-      std::fill_n(out, shape.head_hidden * shape.actions, 0.0);
-      for (int i = 0; i < shape.seam; ++i) hidden[i * shape.head_hidden + i] = out[i * shape.actions + i] = 1;
-    }
-  }
-  std::vector<double> mask(double dropout, uint64_t seed, uint64_t update) {
-    Parallel parallel(2);
-    StepBatch<double> batch = steps.batch(update);
-    batch.seed = seed;
-    net.step(parallel, batch, {{0, 0, 0}, dropout});
-    return net.logits;
-  }
-  const PolicyShape shape = tiny_shape(false);
-  const RandomSteps<double> steps{400, shape, 4};
-  Network<double> net{shape, "modulenet"};
-};
-
-TEST(ModuleNet, DropsOutByChanceAndScalesWhatIsLeft) {
-  OpenSeam open;
-  for (const double dropout : {0.2, 0.7}) {
-    int kept = 0;
-    const std::vector<double> mask = open.mask(dropout, 1, 5);
-    for (const double value : mask) {
-      EXPECT_TRUE(value == 0 || std::abs(value - 1 / (1 - dropout)) < 1e-12) << value;
-      kept += value != 0;
-    }
-    const double expected = (1 - dropout) * double(mask.size());
-    EXPECT_NEAR(kept, expected, 5 * std::sqrt(expected * dropout));
-  }
-  EXPECT_EQ(open.mask(0, 1, 5), std::vector<double>(400 * 5, 1.0));
-}
-
-TEST(ModuleNet, TheMaskIsNamedBySeedAndUpdate) {
-  OpenSeam open;
-  const std::vector<double> mask = open.mask(0.5, 1, 5);
-  EXPECT_EQ(open.mask(0.5, 1, 5), mask);
-  EXPECT_NE(open.mask(0.5, 1, 6), mask);
-  EXPECT_NE(open.mask(0.5, 2, 5), mask);
-}
-
-TEST(ModuleNet, InferenceDropsNothingOut) {
-  OpenSeam open;
-  open.mask(0.5, 1, 5);
-  Parallel parallel(2);
-  EXPECT_EQ(open.net.infer(parallel, open.steps.batch(), 32), std::vector<double>(400 * 5, 1.0));
-}
-
-TEST(ModuleNet, ModulesThatABatchLacksGetNoGradient) {
-  const PolicyShape shape = tiny_shape(false);
-  Network<double> net(shape, "modulenet");
-  net.initialise();
-  RandomSteps<double> steps(20, shape, 4);
-  std::fill(steps.env.begin(), steps.env.end(), 1);
-  std::fill(steps.task.begin(), steps.task.end(), 2);
-  Parallel parallel(1);
-  net.step(parallel, steps.batch(), {});
-  for (const TensorInfo& tensor : net.policy->parameters().tensors()) {
-    if (!tensor.name.starts_with("module")) continue;
-    const double* gradient = net.gradient_of(tensor.name);
-    const bool used = tensor.name.starts_with("module.env1.") || tensor.name.starts_with("module.task2.");
-    EXPECT_EQ(std::any_of(gradient, gradient + tensor.size, [](double g) { return g != 0; }), used) << tensor.name;
-  }
-}
-
-struct TemporalDifference {
-  TemporalDifference() {
-    net.initialise();
-    net.shake();
-  }
-  std::vector<double> gradient(const StepOptions& options) {
-    const std::vector<double> statistics = net.statistics;
-    Parallel parallel(1);
-    losses = net.step(parallel, steps.batch(), options);
-    net.statistics = statistics;
-    return net.gradient;
-  }
-  const PolicyShape shape = tiny_shape(false);
-  RandomSteps<double> steps{14, shape, 4};
-  Network<double> net{shape, "sf"};
-  Losses losses;
-};
-
-StepOptions discounted(double discount, double reward = 0.3) { return {{reward, 0, 0}, 0, discount}; }
-
-TEST(SfTemporalDifference, IsTheLossByHand) {
-  TemporalDifference sf;
-  const PolicyShape& shape = sf.shape;
-  const size_t width = shape.embedding;
-  for (const char* weight : {"phi.out.weight", "psi.out.weight"})
-    std::fill_n(sf.net.parameter(weight), shape.head_hidden * shape.actions * width, 0.0);
-  const double *phi = sf.net.parameter("phi.out.bias"), *psi = sf.net.parameter("psi.out.bias"),
-               *task = sf.net.parameter("embedding.task");
-  const auto value = [&](int action, const double* features, int of_task) {
-    return std::inner_product(features + action * width, features + (action + 1) * width, task + of_task * width, 0.0);
-  };
-  const RandomSteps<double>& steps = sf.steps;
-  double sum = 0, reward = 0;
-  int counted = 0;
-  std::set<int> kinds;
-  for (int i = 0; i < 14; ++i) {
-    kinds.insert(std::min(steps.next[i], 0));
-    reward += std::pow(value(steps.taken[i], phi, steps.task[i]) - steps.reward[i], 2) / 14;
-    if (steps.next[i] == StepBatch<double>::kUnknown) continue;
-    ++counted;
-    for (size_t c = 0; c < width; ++c) {
-      const double next_psi =
-          steps.next[i] == StepBatch<double>::kTerminal ? 0 : psi[steps.label[steps.next[i]] * width + c];
-      sum += std::pow(psi[steps.taken[i] * width + c] - phi[steps.taken[i] * width + c] - 0.9 * next_psi, 2);
-    }
-  }
-  ASSERT_EQ(kinds.size(), 3u);
-  sf.gradient(discounted(0.9));
-  EXPECT_NEAR(sf.losses.policy, sum / double(counted * width), 1e-12);
-  EXPECT_NEAR(sf.losses.reward, reward, 1e-12);
-  EXPECT_TRUE(std::isnan(sf.losses.env) && std::isnan(sf.losses.task));
-  for (int i = 0; i < 14; ++i)
-    for (int a = 0; a < shape.actions; ++a) EXPECT_NEAR(sf.net.logits[i * 5 + a], value(a, psi, steps.task[i]), 1e-12);
-}
-
-TEST(SfTemporalDifference, PhiLearnsFromTheRewardAlone) {
-  TemporalDifference sf;
-  expect_finite_differences(
-      sf.net, sf.steps.batch(), discounted(0.9, 0.3), [](const Losses& losses) { return 0.3 * losses.reward; },
-      [](const std::string& name) { return name.starts_with("phi."); });
-}
-
-TEST(SfTemporalDifference, TargetsAreHeldFixed) {
-  // The loss is quadratic in the discount, and so is its own gradient; with targets held fixed it is linear.
-  TemporalDifference sf;
-  const std::vector<double> none = sf.gradient(discounted(0)), half = sf.gradient(discounted(0.5)),
-                            whole = sf.gradient(discounted(1));
-  std::vector<double> between(none.size());
-  for (size_t i = 0; i < none.size(); ++i) between[i] = (none[i] + whole[i]) / 2;
-  EXPECT_LT(relative_error(half, between), 1e-12);
-  EXPECT_GT(relative_error(none, whole), 1e-3);
-}
-
-TEST(SfTemporalDifference, ABatchOfUnknownStepsTeachesTheRewardAlone) {
-  TemporalDifference sf;
-  std::fill(sf.steps.next.begin(), sf.steps.next.end(), StepBatch<double>::kUnknown);
-  sf.gradient(discounted(0.9));
-  EXPECT_EQ(sf.losses.policy, 0);
-  EXPECT_EQ(sf.net.gradient_of("psi.out.bias")[0], 0);
-  EXPECT_NE(sf.net.gradient_of("phi.out.bias")[0] + sf.net.gradient_of("phi.out.bias")[5], 0);
-}
-
-TEST(Sf, AsksForWhatItsLossNeeds) {
-  PolicyShape shape = tiny_shape(false);
-  const auto needs = [&](SfLoss loss) {
-    shape.sf_loss = loss;
-    return make_policy("sf", shape)->needs();
-  };
-  EXPECT_TRUE(needs(SfLoss::kTemporalDifference).next && !needs(SfLoss::kTemporalDifference).planner_q);
-  EXPECT_TRUE(!needs(SfLoss::kPlannerQ).next && needs(SfLoss::kPlannerQ).planner_q);
-  EXPECT_TRUE(!needs(SfLoss::kCrossEntropy).next && !needs(SfLoss::kCrossEntropy).planner_q);
 }
 
 TEST(EveryMethod, ActsAtATemperature) {

@@ -13,21 +13,17 @@
 namespace synpo {
 namespace {
 
-const KitchenSet& world() {
-  static const KitchenSet kitchens;
-  return kitchens;
-}
-
 TEST(KitchenPlanner, EveryTaskCanBeDoneFromEverywhere) {
-  for (int env = 0; env < world().envs(); ++env)
+  for (int env = 0; env < all_kitchens().envs(); ++env)
     for (int task = 0; task < kKitchenTasks; ++task) {
       Random random(5, Purpose::kEpisodeStart, uint64_t(env), uint64_t(task));
-      KitchenState state = unpack(world().reset(env, random));
-      for (int pose = 0; pose < world().tables(env).pose_count(); ++pose)
+      KitchenState state = unpack(all_kitchens().reset(env, random));
+      for (int pose = 0; pose < all_kitchens().tables(env).pose_count(); ++pose)
         for (int doors = 0; doors < kDoorStates; ++doors) {
           state.pose = uint16_t(pose);
           state.doors = uint8_t(doors);
-          const int steps = world().planner(env).steps_to_success(kitchen_task(task), state);  // throws where it cannot
+          const int steps =
+              all_kitchens().planner(env).steps_to_success(kitchen_task(task), state);  // throws where it cannot
           ASSERT_GE(steps, 2);
           ASSERT_LT(steps, 100);
         }
@@ -37,20 +33,20 @@ TEST(KitchenPlanner, EveryTaskCanBeDoneFromEverywhere) {
 TEST(KitchenPlanner, ItsEpisodesSucceed) {
   int opened = 0;
   for (int i = 0; i < 1200; ++i) {
-    const EnvTask pair = {i % world().envs(), i / 3 % world().task_count()};
+    const EnvTask pair = {i % all_kitchens().envs(), i / 3 % all_kitchens().task_count()};
     Random random(6, Purpose::kEpisodeStart, 0, uint64_t(i));
-    WorldState state = world().reset(pair.env, random);
-    const int plan = world().planner(pair.env).steps_to_success(kitchen_task(pair.task), unpack(state));
+    WorldState state = all_kitchens().reset(pair.env, random);
+    const int plan = all_kitchens().planner(pair.env).steps_to_success(kitchen_task(pair.task), unpack(state));
     int cents = 0, steps = 0;
     WorldStep step = {};
     while (!step.ended()) {
-      ASSERT_TRUE(world().valid(pair, state));
-      const int action = world().expert(pair, state);
+      ASSERT_TRUE(all_kitchens().valid(pair, state));
+      const int action = all_kitchens().expert(pair, state);
       opened += action == kOpenClose;
       if (action == kPickupPut) {
-        ASSERT_TRUE(world().at_choice(pair, state));
+        ASSERT_TRUE(all_kitchens().at_choice(pair, state));
       }
-      step = world().step(pair, state, action);
+      step = all_kitchens().step(pair, state, action);
       cents += step.reward_cents;
       ++steps;
     }
@@ -63,23 +59,23 @@ TEST(KitchenPlanner, ItsEpisodesSucceed) {
 
 TEST(KitchenPlanner, ActsByItsValues) {
   for (int i = 0; i < 600; ++i) {
-    const EnvTask pair = {i % world().envs(), i / 5 % world().task_count()};
+    const EnvTask pair = {i % all_kitchens().envs(), i / 5 % all_kitchens().task_count()};
     Random random(7, Purpose::kEpisodeStart, 0, uint64_t(i)), moves(7, Purpose::kNoise, 0, uint64_t(i));
-    WorldState state = world().reset(pair.env, random);
+    WorldState state = all_kitchens().reset(pair.env, random);
     for (uint32_t wander = moves.below(40); wander > 0; --wander) {
       WorldState next = state;
-      if (!world().step(pair, next, int(moves.below(kKitchenActions))).ended()) state = next;
+      if (!all_kitchens().step(pair, next, int(moves.below(kKitchenActions))).ended()) state = next;
     }
     int q[kKitchenActions];
-    world().action_values(pair, state, q);
-    ASSERT_EQ(world().expert(pair, state), std::max_element(q, q + kKitchenActions) - q);
+    all_kitchens().action_values(pair, state, q);
+    ASSERT_EQ(all_kitchens().expert(pair, state), std::max_element(q, q + kKitchenActions) - q);
     for (int action = 0; action < kKitchenActions; ++action) {
       WorldState at = state;
       at.steps = 0;
-      WorldStep step = world().step(pair, at, action);
+      WorldStep step = all_kitchens().step(pair, at, action);
       int sum = step.reward_cents;
       while (!step.ended()) {
-        step = world().step(pair, at, world().expert(pair, at));
+        step = all_kitchens().step(pair, at, all_kitchens().expert(pair, at));
         sum += step.reward_cents;
       }
       ASSERT_EQ(q[action], sum) << kKitchenActionNames[action];

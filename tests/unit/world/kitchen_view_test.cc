@@ -14,11 +14,6 @@
 namespace synpo {
 namespace {
 
-const KitchenSet& world() {
-  static const KitchenSet kitchens;
-  return kitchens;
-}
-
 using Picture = std::vector<uint8_t>;
 
 Picture picture(const KitchenSolids& solids, const KitchenFrame& frame, int side) {
@@ -36,8 +31,8 @@ Picture small_picture(const KitchenSolids& solids, const KitchenFrame& frame) {
 // A state in the middle of something: any pose, any doors, sometimes with an object in the hand.
 KitchenState any_state(int env, uint64_t number) {
   Random random(11, Purpose::kEpisodeStart, uint64_t(env), number);
-  KitchenState state = unpack(world().reset(env, random));
-  state.pose = uint16_t(random.below(uint32_t(world().tables(env).poses.size())));
+  KitchenState state = unpack(all_kitchens().reset(env, random));
+  state.pose = uint16_t(random.below(uint32_t(all_kitchens().tables(env).poses.size())));
   state.doors = uint8_t(random.below(kDoorStates));
   if (random.below(2)) {
     state.hand = uint8_t(random.below(kKitchenObjects));
@@ -46,33 +41,7 @@ KitchenState any_state(int env, uint64_t number) {
   return state;
 }
 
-KitchenFrame any_frame(int env, uint64_t number) { return world().frame(env, pack(any_state(env, number))); }
-
-TEST(KitchenRay, MeetsThingsWhereTheyStand) {
-  const KitchenSolids solids(small_kitchen());
-  const SolidsView view = {&solids, 4.5f, 4.5f, solids.reach.data(), nullptr};
-  const auto expect = [&](Vec3 direction, Material material, Face face, float t) {
-    const Hit hit = trace(view, ray_cell(4, 4), direction);
-    EXPECT_EQ(int(hit.material), int(material));
-    EXPECT_EQ(int(hit.face), int(face));
-    EXPECT_NEAR(hit.t, t, 1e-5);
-  };
-  expect({0, -1, 0}, Material::kWall, Face::kSouth, 3.5f);
-  expect({1, 0, 0}, Material::kWall, Face::kWest, 4.5f);
-  expect({-1, 0, 0}, Material::kWall, Face::kEast, 3.5f);
-  expect({0, -1, -1}, Material::kCounterTop, Face::kTop, 2.4f);
-  expect({0, -1, -2}, Material::kCabinet, Face::kSouth, 1.5f);
-  expect({0, -1, -5}, Material::kFloor, Face::kTop, 1.2f);
-  expect({0, -1, 4}, Material::kCeiling, Face::kBottom, 1);
-  expect({-1.5f, -1.5f, 0}, Material::kFridge, Face::kSouth, 1);
-  expect({0, 1, -4}, Material::kTable, Face::kTop, 0.75f);
-  expect({0, 1, -6.2f}, Material::kTable, Face::kNorth, 0.5f);
-  expect({0.1f, 1, -7.5f}, Material::kFloor, Face::kTop, 0.8f);  // between its legs
-  expect({1.5f, -2.5f, -3}, Material::kSink, Face::kTop, 3.04f / 3);
-  expect({2, -1.57f, -2.4f}, Material::kSink, Face::kTop, 1);             // its rim
-  expect({-1.4f, 0.6f, -5}, Material::kTable, Face::kEast, 1.3f / 1.4f);  // a leg
-  expect({0, 4.5f, -2}, Material::kMicrowave, Face::kNorth, 3.62f / 4.5f);
-}
+KitchenFrame any_frame(int env, uint64_t number) { return all_kitchens().frame(env, pack(any_state(env, number))); }
 
 TEST(KitchenView, AgreesWithWhatIsVisible) {
   constexpr int kSide = 128;
@@ -80,25 +49,25 @@ TEST(KitchenView, AgreesWithWhatIsVisible) {
   std::array<int, kKitchenReceptacles> receptacles = {};
   static constexpr Material materials[] = {Material::kFridge, Material::kMicrowave, Material::kSink};
   for (int i = 0; i < 250; ++i) {
-    const int env = i % world().envs();
-    const KitchenTables& tables = world().tables(env);
+    const int env = i % all_kitchens().envs();
+    const KitchenTables& tables = all_kitchens().tables(env);
     Random random(12, Purpose::kNoise, 0, uint64_t(i));
     const int pose = int(random.below(uint32_t(tables.pose_count())));
     KitchenFrame frame;
     frame.eye = tables.poses[size_t(pose)];
-    const Picture empty = picture(world().solids(env), frame, kSide);
+    const Picture empty = picture(all_kitchens().solids(env), frame, kSide);
     const auto slots = tables.sight[0]->slots.at(pose);
     if (!slots.empty()) {
       const size_t object = random.below(kKitchenObjects);
       const KitchenCell& slot = tables.slots[slots[random.below(uint32_t(slots.size()))].index];
       frame.objects[object] = int16_t(ray_cell(slot.row, slot.column));
-      ASSERT_NE(picture(world().solids(env), frame, kSide), empty) << i;
+      ASSERT_NE(picture(all_kitchens().solids(env), frame, kSide), empty) << i;
       ++objects[object];
     }
     for (const KitchenSeen& seen : tables.sight[0]->receptacles.at(pose)) {
       const Camera camera(frame.eye.heading / 90, frame.eye.horizon);
-      const SolidsView view = {&world().solids(env), float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f,
-                               world().solids(env).reach.data(), nullptr};
+      const SolidsView view = {&all_kitchens().solids(env), float(frame.eye.column) + 0.5f, float(frame.eye.row) + 0.5f,
+                               all_kitchens().solids(env).reach.data(), nullptr};
       int pixels = 0;
       for (int at = 0; at < kSide * kSide; ++at) {
         const float u = kViewSlope * (float(at % kSide * 2 + 1) / kSide - 1),
@@ -118,16 +87,16 @@ TEST(KitchenView, AgreesWithWhatIsVisible) {
 
 TEST(KitchenView, ShowsWhetherAVisibleDoorIsOpen) {
   int doors = 0;
-  for (int env = 0; env < world().envs(); ++env) {
-    const KitchenTables& tables = world().tables(env);
+  for (int env = 0; env < all_kitchens().envs(); ++env) {
+    const KitchenTables& tables = all_kitchens().tables(env);
     for (int pose = env % 5; pose < tables.pose_count(); pose += 5)
       for (const KitchenSeen& seen : tables.sight[0]->receptacles.at(pose)) {
         if (seen.index >= kKitchenDoors) continue;
         KitchenFrame frame;
         frame.eye = tables.poses[size_t(pose)];
-        const Picture closed = small_picture(world().solids(env), frame);
+        const Picture closed = small_picture(all_kitchens().solids(env), frame);
         frame.doors = uint8_t(1 << seen.index);
-        ASSERT_NE(small_picture(world().solids(env), frame), closed) << env << " pose " << pose;
+        ASSERT_NE(small_picture(all_kitchens().solids(env), frame), closed) << env << " pose " << pose;
         ++doors;
       }
   }
@@ -144,9 +113,9 @@ TEST(KitchenView, ShowsNothingFromBehindNorFromTheHand) {
   KitchenState state = any_state(0, 1);
   state.hand = 3;
   state.slots[3] = kNoSlot;
-  EXPECT_EQ(world().frame(0, pack(state)).objects[3], -1);
-  const KitchenCell& mug = world().tables(0).slots[state.slots[2]];
-  EXPECT_EQ(world().frame(0, pack(state)).objects[2], ray_cell(mug.row, mug.column));
+  EXPECT_EQ(all_kitchens().frame(0, pack(state)).objects[3], -1);
+  const KitchenCell& mug = all_kitchens().tables(0).slots[state.slots[2]];
+  EXPECT_EQ(all_kitchens().frame(0, pack(state)).objects[2], ray_cell(mug.row, mug.column));
 }
 
 TEST(KitchenView, AnObjectIsDrawnInItsColourWhereItLies) {
@@ -217,9 +186,10 @@ TEST(KitchenView, ColoursDiffer) {
 
 TEST(KitchenView, StoredRaysDrawTheSamePicture) {
   for (uint64_t i = 0; i < 400; ++i) {
-    const int env = int(i) % world().envs();
+    const int env = int(i) % all_kitchens().envs();
     const KitchenFrame frame = any_frame(env, i);
-    ASSERT_EQ(small_picture(world().solids(env), frame), picture(world().solids(env), frame, kSmallView)) << i;
+    ASSERT_EQ(small_picture(all_kitchens().solids(env), frame), picture(all_kitchens().solids(env), frame, kSmallView))
+        << i;
   }
 }
 
@@ -267,8 +237,8 @@ TEST(KitchenFeatures, AreSoftHistogramsOfCells) {
 TEST(KitchenFeatures, TellVisibleThingsApart) {
   int same = 0, objects = 0;
   for (int i = 0; i < 3000; ++i) {
-    const int env = i % world().envs();
-    const KitchenTables& tables = world().tables(env);
+    const int env = i % all_kitchens().envs();
+    const KitchenTables& tables = all_kitchens().tables(env);
     Random random(13, Purpose::kNoise, 0, uint64_t(i));
     const int pose = int(random.below(uint32_t(tables.pose_count())));
     const auto slots = tables.sight[0]->slots.at(pose);
@@ -279,9 +249,9 @@ TEST(KitchenFeatures, TellVisibleThingsApart) {
     const size_t one = random.below(kKitchenObjects),
                  other = (one + 1 + random.below(kKitchenObjects - 1)) % kKitchenObjects;
     frame.objects[one] = int16_t(ray_cell(slot.row, slot.column));
-    const std::vector<float> with_one = features_of(small_picture(world().solids(env), frame));
+    const std::vector<float> with_one = features_of(small_picture(all_kitchens().solids(env), frame));
     std::swap(frame.objects[one], frame.objects[other]);
-    same += with_one == features_of(small_picture(world().solids(env), frame));
+    same += with_one == features_of(small_picture(all_kitchens().solids(env), frame));
     ++objects;
   }
   EXPECT_GT(objects, 500);
@@ -293,7 +263,7 @@ TEST(KitchenFeatures, DoNotDependOnWhatIsKeptNorOnThreads) {
   std::vector<std::vector<float>> expected;
   for (uint64_t i = 0; i < kViews; ++i) {
     const int env = int(i % 3);
-    expected.push_back(features_of(small_picture(world().solids(env), any_frame(env, i / 2))));
+    expected.push_back(features_of(small_picture(all_kitchens().solids(env), any_frame(env, i / 2))));
   }
   std::vector<int> wrong(4, 0);
   std::vector<std::thread> threads;
@@ -302,8 +272,8 @@ TEST(KitchenFeatures, DoNotDependOnWhatIsKeptNorOnThreads) {
       for (int n = 0; n < 2 * kViews; ++n) {
         const uint64_t i = uint64_t(n / 2) * (thread * 6 + 1) % kViews;  // every view twice
         const int env = int(i % 3);
-        wrong[thread] += std::memcmp(view_features(world().solids(env), any_frame(env, i / 2)), expected[i].data(),
-                                     kViewFeatures * sizeof(float)) != 0;
+        wrong[thread] += std::memcmp(view_features(all_kitchens().solids(env), any_frame(env, i / 2)),
+                                     expected[i].data(), kViewFeatures * sizeof(float)) != 0;
       }
     });
   for (std::thread& thread : threads) thread.join();
@@ -316,36 +286,37 @@ TEST(KitchenFeatures, AreOfTheirOwnKitchen) {
   for (int16_t row = 4; row < 8; ++row)
     for (int16_t heading = 0; heading < 360; heading += 90)
       for (uint8_t doors = 0; doors < kDoorStates; ++doors)
-        for (int env = 0; env < world().envs(); ++env) {
-          if (pose_at(world().tables(env), row, 5, heading, 0) < 0) continue;
+        for (int env = 0; env < all_kitchens().envs(); ++env) {
+          if (pose_at(all_kitchens().tables(env), row, 5, heading, 0) < 0) continue;
           KitchenFrame frame;
           frame.eye = {row, 5, heading, 0};
           frame.doors = doors;
-          const float* features = view_features(world().solids(env), frame);
+          const float* features = view_features(all_kitchens().solids(env), frame);
           ASSERT_TRUE(std::equal(features, features + kViewFeatures,
-                                 features_of(small_picture(world().solids(env), frame)).begin()));
+                                 features_of(small_picture(all_kitchens().solids(env), frame)).begin()));
           ++views;
         }
   EXPECT_GT(views, 500);
 }
 
 TEST(KitchenSet, ObservesTheLastFourViewsAndTheHand) {
-  ASSERT_EQ(world().observation_size(), (4 * 2048 + 16) * 4u);
+  ASSERT_EQ(all_kitchens().observation_size(), (4 * 2048 + 16) * 4u);
   const int env = 3;
   StateHistory history;
   std::vector<WorldState> states;
   for (uint64_t step = 0; step < 7; ++step) {
     states.push_back(pack(any_state(env, step)));
     history.push(states.back());
-    std::vector<uint8_t> bytes(world().observation_size() + 1, 0x5a);
-    world().observe(env, history, 1, bytes.data() + 1);  // nobody promises that it is aligned
-    std::vector<float> observation(world().observation_size() / sizeof(float));
-    std::memcpy(observation.data(), bytes.data() + 1, world().observation_size());
+    std::vector<uint8_t> bytes(all_kitchens().observation_size() + 1, 0x5a);
+    all_kitchens().observe(env, history, 1, bytes.data() + 1);  // nobody promises that it is aligned
+    std::vector<float> observation(all_kitchens().observation_size() / sizeof(float));
+    std::memcpy(observation.data(), bytes.data() + 1, all_kitchens().observation_size());
     for (int view = 0; view < 4; ++view) {
       const int of = int(step) - 3 + view;
       const std::vector<float> expected =
-          of < 0 ? std::vector<float>(kViewFeatures, 0)
-                 : features_of(small_picture(world().solids(env), world().frame(env, states[size_t(of)])));
+          of < 0
+              ? std::vector<float>(kViewFeatures, 0)
+              : features_of(small_picture(all_kitchens().solids(env), all_kitchens().frame(env, states[size_t(of)])));
       ASSERT_TRUE(std::equal(expected.begin(), expected.end(), observation.begin() + view * kViewFeatures))
           << step << " " << view;
     }

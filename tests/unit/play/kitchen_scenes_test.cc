@@ -1,6 +1,7 @@
+#include "play/kitchen_scenes.h"
+
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstring>
 #include <set>
 
@@ -9,7 +10,6 @@
 #include "helpers/kitchens.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
-#include "play/kitchen_scenes.h"
 #include "play/model.h"
 #include "play/world_factory.h"
 #include "world/grid/view.h"
@@ -25,6 +25,7 @@ const KitchenSet& small_world() {
 
 // Pictures of five bytes, in which everything that can change shows, and many are alike.
 constexpr int kPicture = 5;
+
 PictureFeatures frames_as_features() {
   PictureFeatures features;
   features.name = "frames";
@@ -58,27 +59,6 @@ RecordedKitchens world_of_scene(Scene scene) {
 
 Scene scene_of(const std::string& bytes) {
   return read_text(bytes, [](Input& input) { return read_scene(input); });
-}
-
-TEST(Half, EveryOneComesBack) {
-  for (uint32_t bits = 0; bits < 0x10000; ++bits) {
-    const Half half = {uint16_t(bits)};
-    EXPECT_EQ(is_finite(half), (bits & 0x7fff) < 0x7c00);
-    if (!is_finite(half)) continue;
-    const int exponent = int(bits >> 10 & 31), mantissa = int(bits & 1023);
-    const double value = exponent ? std::ldexp(1024 + mantissa, exponent - 25) : std::ldexp(mantissa, -24);
-    ASSERT_EQ(to_float(half), float(bits & 0x8000 ? -value : value)) << bits;
-    ASSERT_EQ(to_half(to_float(half)).bits, bits);
-  }
-}
-
-TEST(Half, TheNearestIsTakenAndOfTwoTheEven) {
-  for (uint32_t bits = 0; bits < 0x7bff; ++bits) {
-    const float low = to_float({uint16_t(bits)}), high = to_float({uint16_t(bits + 1)}), middle = (low + high) / 2;
-    ASSERT_EQ(to_half(middle).bits, bits + (bits & 1));
-    ASSERT_EQ(to_half(std::nextafter(middle, low)).bits, bits);
-    ASSERT_EQ(to_half(-std::nextafter(middle, high)).bits, 0x8000 + bits + 1);
-  }
 }
 
 TEST(Scene, ComesBack) {

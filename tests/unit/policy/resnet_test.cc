@@ -1,4 +1,4 @@
-#include "policy/method/synpo.h"
+#include "policy/encoder/resnet.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 
 #include "helpers/policy_fixture.h"
 #include "nn/layers/norm.h"
+#include "policy/method/synpo.h"
 
 namespace synpo {
 namespace {
