@@ -1,7 +1,10 @@
 #include "base/error.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <iomanip>
+#include <iterator>
+#include <utility>
 
 #include "base/text.h"
 
@@ -26,6 +29,17 @@ bool add_printable(std::string_view text, size_t limit, std::string& out) {
   return i == text.size();
 }
 
+// Whether a character has ink of its own: neither blank nor a mark on what is before it.
+bool is_seen_alone(uint32_t code) {
+  static constexpr std::pair<uint32_t, uint32_t> unseen[] = {
+      {0xad, 0xad},     {0x300, 0x36f},   {0x483, 0x489},    {0x115f, 0x1160}, {0x1680, 0x1680}, {0x180b, 0x180e},
+      {0x1ab0, 0x1aff}, {0x1dc0, 0x1dff}, {0x2000, 0x200f},  {0x2028, 0x202f}, {0x205f, 0x206f}, {0x20d0, 0x20ff},
+      {0x2800, 0x2800}, {0x3000, 0x3000}, {0x3164, 0x3164},  {0xfe00, 0xfe0f}, {0xfe20, 0xfe2f}, {0xfeff, 0xfeff},
+      {0xffa0, 0xffa0}, {0xfff9, 0xfffb}, {0xe0000, 0xe0fff}};
+  return std::none_of(std::begin(unseen), std::end(unseen),
+                      [&](const auto& range) { return code >= range.first && code <= range.second; });
+}
+
 }  // namespace
 
 std::string printable(std::string_view text, size_t limit) {
@@ -44,11 +58,10 @@ std::string character_text(std::string_view text, size_t at) {
   if (length == 0) return "the byte " + printable(text.substr(at, 1));
   const std::string_view character = text.substr(at, length);
   if (character == "\t") return "a tab";
+  if (character == "\r") return "a carriage return";
   if (character == "\xc2\xa0") return "a no-break space";
   if (character == "\xef\xbb\xbf") return "a byte order mark";
-  const bool blank = (code >= 0x2000 && code <= 0x200f) || code == 0x2028 || code == 0x2029 || code == 0x202f ||
-                     code == 0x205f || code == 0x2060 || code == 0x3000 || code == 0xad;
-  if (printable_length(text, at) > 0 && !blank) return "'" + std::string(character) + "'";
+  if (printable_length(text, at) > 0 && is_seen_alone(code)) return "'" + std::string(character) + "'";
   std::ostringstream out;
   out << "U+" << std::hex << std::uppercase << std::setw(4) << std::setfill('0') << code;
   return out.str();

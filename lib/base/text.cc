@@ -56,7 +56,7 @@ std::string fault_of_name(std::string_view name) {
   if (at == std::string_view::npos) return "";
   char byte[8];
   std::snprintf(byte, sizeof byte, "\\x%02x", uint8_t(name[at]));
-  return std::string("found ") + (uint8_t(name[at]) < 0x80 ? "a control character" : "invalid UTF-8") + " at byte " +
+  return std::string("found ") + (utf8_length(name, at) > 0 ? "a control character" : "invalid UTF-8") + " at byte " +
          std::to_string(at + 1) + " of the name (" + byte + "), expected UTF-8 text";
 }
 

@@ -22,7 +22,7 @@ int64_t whole(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
   int64_t value = 0;
   if (!parse_whole(text, value) || value < 0)
-    fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number from 0");
+    fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number from 0 to ", INT64_MAX);
   return value;
 }
 

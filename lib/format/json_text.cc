@@ -30,22 +30,57 @@ size_t byte_of_token(std::string_view text, const std::string& reason) {
   return at == std::string_view::npos ? 0 : at + 1;
 }
 
+// Looks at a text before anything is made of it, in a time that grows with its length alone.
+class Inspector : public nlohmann::json_sax<Json> {
+ public:
+  explicit Inspector(const JsonLimits& limits) : limits_(limits) {}
+
+  bool null() override { return count(); }
+  bool boolean(bool) override { return count(); }
+  bool number_integer(number_integer_t) override { return count(); }
+  bool number_unsigned(number_unsigned_t) override { return count(); }
+  bool number_float(number_float_t, const string_t&) override { return count(); }
+  bool string(string_t&) override { return count(); }
+  bool binary(binary_t&) override { return count(); }
+  bool start_object(size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool start_array(size_t) override { return open(); }
+  bool end_array() override { return close(); }
+  bool key(string_t& name) override {
+    if (!names_.back().insert(name).second) fail(Exit::kData, "the name ", synpo::quoted(name), " twice in one object");
+    return count();
+  }
+  // The parser proper will say it.
+  bool parse_error(size_t, const std::string&, const Json::exception&) override { return false; }
+
+ private:
+  bool count() {
+    if (int(names_.size()) > limits_.depth) fail(Exit::kData, "more than ", limits_.depth, " levels of nesting");
+    if (++values_ > limits_.values) fail(Exit::kData, "more than ", limits_.values, " values and names");
+    return true;
+  }
+  bool open() {
+    count();
+    names_.emplace_back();
+    return true;
+  }
+  bool close() {
+    names_.pop_back();
+    return count();
+  }
+
+  JsonLimits limits_;
+  std::vector<std::unordered_set<std::string>> names_;  // of the objects and arrays that are open
+  size_t values_ = 0;
+};
+
 }  // namespace
 
 Json parse_json(std::string_view text, const JsonLimits& limits) {
-  std::vector<std::unordered_set<std::string>> names;  // of the objects that are open
-  size_t values = 0;
-  const auto look = [&](int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > limits.depth) fail(Exit::kData, "more than ", limits.depth, " levels of nesting");
-    if (++values > limits.values) fail(Exit::kData, "more than ", limits.values, " values and names");
-    if (event == Json::parse_event_t::object_start) names.emplace_back();
-    if (event == Json::parse_event_t::object_end) names.pop_back();
-    if (event == Json::parse_event_t::key && !names.back().insert(parsed.get_ref<const std::string&>()).second)
-      fail(Exit::kData, "the name ", quoted(parsed.get_ref<const std::string&>()), " twice in one object");
-    return true;
-  };
+  Inspector inspector(limits);
+  Json::sax_parse(text, &inspector);
   try {
-    return Json::parse(text, look);
+    return Json::parse(text);
   } catch (const Json::parse_error& error) {
     fail(Exit::kData, "no JSON (byte ", error.byte, ": ", printable(reason_of(error.what()), kReasonLimit), ")");
   } catch (const Json::exception& error) {

@@ -43,7 +43,7 @@ constexpr TensorType type_of() {
 
 uint64_t whole(const std::string& where, const Json& value) {
   if (!value.is_number_unsigned())
-    fail(Exit::kData, where, ": found ", quoted(value.dump()), ", expected a whole number from 0");
+    fail(Exit::kData, where, ": found ", quoted(value.dump()), ", expected a whole number from 0 to ", UINT64_MAX);
   return value.get<uint64_t>();
 }
 

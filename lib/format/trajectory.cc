@@ -116,7 +116,7 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
   t.env_hash = parse_hex(text(object, "env_hash"));
   t.window = int(whole("window", need(object, "window"), 0, 1000));
   const Json& seed = need(object, "seed");
-  if (!seed.is_number_unsigned()) wrong("seed", seed, "a whole number from 0");
+  if (!seed.is_number_unsigned()) wrong("seed", seed, concat("a whole number from 0 to ", UINT64_MAX));
   t.seed = seed.get<uint64_t>();
   t.episode = whole("episode", need(object, "episode"), 0, INT64_MAX);
   const Json& start = need(object, "start");

@@ -11,12 +11,11 @@
 namespace synpo {
 namespace {
 
-// "invalid UTF-8" or "control character", with the byte.
-std::string name_bad_byte(uint8_t byte) {
-  char hex_digits[5] = "\\x00";
-  hex_digits[2] = "0123456789abcdef"[byte >> 4];
-  hex_digits[3] = "0123456789abcdef"[byte & 15];
-  return concat(byte < 0x80 ? "control character " : "invalid UTF-8 at byte ", hex_digits);
+// "invalid UTF-8" or "control character", with its bytes.
+std::string name_bad_byte(std::string_view line, size_t at) {
+  const size_t length = utf8_length(line, at);
+  return (length > 0 ? "control character " : "invalid UTF-8 at byte ") +
+         printable(line.substr(at, std::max<size_t>(1, length)));
 }
 
 }  // namespace
@@ -66,7 +65,7 @@ bool TsvReader::row(std::vector<std::string>& fields) {
   if (const size_t bad = first_bad_byte(line); bad != std::string::npos) {
     const auto column = std::count(line.begin(), line.begin() + bad, '\t') + 1;
     fail(Exit::kData, input_.name(), ": line ", input_.line_number(), ", column ", column, ": found ",
-         name_bad_byte(uint8_t(line[bad])), ", expected UTF-8 text");
+         name_bad_byte(line, bad), ", expected UTF-8 text");
   }
   if (!header && count != columns_.size()) {
     if (line.empty())

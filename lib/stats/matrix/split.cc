@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "base/random.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -179,6 +180,8 @@ void check_names(const std::vector<std::string>& names, const char* what) {
   std::set<std::string> known;
   for (const std::string& name : names) {
     if (name.empty()) fail(Exit::kUsage, what == std::string("task") ? "a " : "an ", what, " has no name");
+    if (const std::string fault = fault_of_name(name); !fault.empty())
+      fail(Exit::kUsage, "the ", what, " ", quoted(name), ": ", fault);
     if (!known.insert(name).second) fail(Exit::kUsage, "the ", what, " ", quoted(name), " is named twice");
   }
 }

@@ -61,6 +61,8 @@ std::string Maze::canonical_text() const {
 
 Maze parse_maze(const std::string& name, const std::string& text, const std::string& where) {
   const auto bad = [&](const auto&... what) { fail(Exit::kData, where, ": ", what...); };
+  if (text.starts_with(std::string_view("\xff\xfe\0\0", 4)) || text.starts_with(std::string_view("\0\0\xfe\xff", 4)))
+    bad("found UTF-32, expected plain ASCII text");
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff")) bad("found UTF-16, expected plain ASCII text");
   if (const size_t cr = text.find('\r'); cr != std::string::npos && text.find('\n') == std::string::npos)
     bad("lines end in CR alone, expected LF or CR LF");
@@ -77,13 +79,15 @@ Maze parse_maze(const std::string& name, const std::string& text, const std::str
   if (lines.empty())
     bad("found ", text.empty() ? "nothing" : "blanks alone", ", expected a maze of ", kGridSide, " lines of ",
         kGridSide, " characters");
+  const auto inside = lines.begin() + std::ptrdiff_t(std::min<size_t>(lines.size(), kGridSide));
+  if (const auto empty = std::find(lines.begin(), inside, ""); empty != inside)
+    bad("line ", empty - lines.begin() + 1, ": found an empty line, expected ", kGridSide, " characters");
   if (lines.size() != kGridSide)
     bad("found ", lines.size(), " lines, expected a maze of ", kGridSide, " lines of ", kGridSide, " characters");
   Maze maze;
   maze.name = name;
   for (int row = 0; row < kGridSide; ++row) {
     std::string line = lines[row];
-    if (line.empty()) bad("line ", row + 1, ": found an empty line, expected ", kGridSide, " characters");
     line.erase(std::min(line.size(), std::max<size_t>(kGridSide, line.find_last_not_of(' ') + 1)));
     if (line.size() > kGridSide) bad("line ", row + 1, ": found ", line.size(), " characters, expected ", kGridSide);
     for (int column = 0; column < kGridSide; ++column) {

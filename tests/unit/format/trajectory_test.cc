@@ -151,9 +151,10 @@ TEST(Trajectory, WrongKindsAreNamed) {
                   message.ends_with("expected a JSON object"))
           << message;
     }
-  EXPECT_EQ(refused(with("seed", "-1")), "65 field 'seed': found '-1', expected a whole number from 0");
+  EXPECT_EQ(refused(with("seed", "-1")),
+            "65 field 'seed': found '-1', expected a whole number from 0 to 18446744073709551615");
   EXPECT_EQ(refused(with("seed", "18446744073709551616")),
-            "65 field 'seed': found '1.8446744073709552e+19', expected a whole number from 0");
+            "65 field 'seed': found '1.8446744073709552e+19', expected a whole number from 0 to 18446744073709551615");
   EXPECT_EQ(refused(with("window", "1001")), "65 field 'window': found '1001', expected a whole number from 0 to 1000");
   EXPECT_EQ(refused(with("env_hash", "\"12\"")), "65 found '12', expected a hash of 16 hexadecimal digits");
   EXPECT_EQ(refused(with("start", "[1,2]")), "65 field 'start': found '[1,2]', expected an object of places");

@@ -68,6 +68,8 @@ TEST(Tsv, RefusesBytesThatAreNoText) {
             "65 IN: line 2, column 1: found control character \\x00, expected UTF-8 text");
   EXPECT_EQ(refused("a\tb\n1\t\x1b[31m\n"),
             "65 IN: line 2, column 2: found control character \\x1b, expected UTF-8 text");
+  EXPECT_EQ(refused("a\tb\n1\tx\xc2\x9b\n"),
+            "65 IN: line 2, column 2: found control character \\xc2\\x9b, expected UTF-8 text");
 }
 
 TEST(Tsv, RefusesAMillionColumns) {

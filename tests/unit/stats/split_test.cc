@@ -223,6 +223,12 @@ TEST(Split, RefusesPlansThatCannotBeMet) {
   p = plan(2, 2, 2);
   p.tasks = {"", "t1"};
   EXPECT_EQ(refused(p), "64 a task has no name");
+  // What no reader of pairs takes.
+  p.tasks = {"a\tb"};
+  EXPECT_EQ(refused(p),
+            "64 the task 'a\\x09b': found a control character at byte 2 of the name (\\x09), expected UTF-8 text");
+  p.tasks = {std::string(256, 'x')};
+  EXPECT_TRUE(refused(p).ends_with("...': found a name of 256 bytes, expected at most 255"));
 }
 
 TEST(Split, ChoosesNames) {

@@ -116,7 +116,13 @@ TEST(Maze, NamesWhatCannotBeSeen) {
   // Columns are characters: the one after a block of three bytes is the next.
   EXPECT_EQ(with("\xe2\x96\x88", 0, 0), found(1, 1, "'\xe2\x96\x88'"));
   EXPECT_EQ(with("\xff", 3, 4), found(4, 5, "the byte \\xff"));
+  EXPECT_EQ(with("#\u0301", 3, 4), found(4, 6, "U+0301"));  // an accent on the character before
+  EXPECT_EQ(with("\ufe0f", 3, 4), found(4, 5, "U+FE0F"));
+  EXPECT_EQ(with("\r", 3, 4), found(4, 5, "a carriage return"));
   EXPECT_EQ(maze_refused("\xff\xfe#"), "65 m.txt: found UTF-16, expected plain ASCII text");
+  EXPECT_EQ(maze_refused(std::string("\xff\xfe\0\0#\0\0\0", 8)), "65 m.txt: found UTF-32, expected plain ASCII text");
+  std::string gap = good;
+  EXPECT_EQ(maze_refused(gap.insert(5 * 17, "\n")), "65 m.txt: line 6: found an empty line, expected 16 characters");
   std::string cr = good;
   std::replace(cr.begin(), cr.end(), '\n', '\r');
   EXPECT_EQ(maze_refused(cr), "65 m.txt: lines end in CR alone, expected LF or CR LF");
