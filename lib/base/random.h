@@ -13,7 +13,7 @@ enum class Purpose : uint32_t {
   kEpisodeStart,  // of the expert's episodes
   kNoise,         // in the expert's moves
   kSplit,
-  kInit,  // first weights; of seeds of their own, plans and colours of kitchens too
+  kInit,  // first weights; also the plans of the built-in kitchens, and the colours of kitchens
   kBatch,
   kRollIn,
   kEvaluation,       // starts of synpo-eval's episodes; their moves are of kSample

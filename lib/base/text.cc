@@ -54,10 +54,15 @@ std::string fault_of_name(std::string_view name) {
            std::to_string(kLongestName);
   const size_t at = std::min(first_bad_byte(name), name.find('\t'));
   if (at == std::string_view::npos) return "";
-  char byte[8];
-  std::snprintf(byte, sizeof byte, "\\x%02x", uint8_t(name[at]));
-  return std::string("found ") + (utf8_length(name, at) > 0 ? "a control character" : "invalid UTF-8") + " at byte " +
-         std::to_string(at + 1) + " of the name (" + byte + "), expected UTF-8 text";
+  const size_t length = utf8_length(name, at);
+  std::string bytes;
+  for (const char c : name.substr(at, std::max<size_t>(1, length))) {
+    char byte[8];
+    std::snprintf(byte, sizeof byte, "\\x%02x", uint8_t(c));
+    bytes += byte;
+  }
+  return std::string("found ") + (length > 0 ? "a control character" : "invalid UTF-8") + " at byte " +
+         std::to_string(at + 1) + " of the name (" + bytes + "), expected UTF-8 text";
 }
 
 bool natural_less(const std::string& a, const std::string& b) {

@@ -61,7 +61,8 @@ TEST(Text, FaultOfName) {
   EXPECT_EQ(fault_of_name("caf\xe9"), "found invalid UTF-8 at byte 4 of the name (\\xe9), expected UTF-8 text");
   EXPECT_EQ(fault_of_name("a\tb"), "found a control character at byte 2 of the name (\\x09), expected UTF-8 text");
   EXPECT_EQ(fault_of_name("a\nb\xff"), "found a control character at byte 2 of the name (\\x0a), expected UTF-8 text");
-  EXPECT_EQ(fault_of_name("a\xc2\x9b"), "found a control character at byte 2 of the name (\\xc2), expected UTF-8 text");
+  EXPECT_EQ(fault_of_name("a\xc2\x9b"),
+            "found a control character at byte 2 of the name (\\xc2\\x9b), expected UTF-8 text");
   EXPECT_EQ(fault_of_name("\x7f"), "found a control character at byte 1 of the name (\\x7f), expected UTF-8 text");
 }
 
