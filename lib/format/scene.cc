@@ -75,15 +75,14 @@ std::vector<int32_t> integers(const SafeTensors& file, const std::string& name, 
 
 std::string name_in(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
-  if (!fault_of_name(text).empty())
-    fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a name");
+  if (const std::string fault = fault_of_name(text); !fault.empty()) fail(Exit::kData, "metadata '", key, "': ", fault);
   return text;
 }
 
 int whole(const SafeTensors& file, const std::string& key) {
   const std::string& text = file.meta(key);
   if (text.empty() || text.size() > 9 || text.find_first_not_of("0123456789") != std::string::npos)
-    fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number");
+    fail(Exit::kData, "metadata '", key, "': found ", quoted(text), ", expected a whole number from 0 to 999999999");
   return std::stoi(text);
 }
 

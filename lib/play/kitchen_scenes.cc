@@ -175,6 +175,7 @@ std::vector<RecordedKitchen> read_kitchens(const std::string& folder) {
     Scene scene = read_scene(input);
     try {
       kitchens.push_back(to_kitchen(std::move(scene)));
+      kitchens.back().source = input.name();
     } catch (const Error& wrong) {
       fail(wrong.code(), "cannot read ", input.name(), ": ", wrong.what());
     }

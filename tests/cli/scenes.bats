@@ -84,7 +84,7 @@ setup() { set_up scenes two others e.jsonl a.ckpt one.tsv; }
     mkdir mixed empty
     cp scenes/FloorPlan10.scene.safetensors others/FloorPlan2.scene.safetensors mixed
     fails 65 synpo-gen-expert -n 1 -w kitchen:mixed
-    says "FloorPlan10: found features of 'frames@0123456789abcdef', expected 'frames@0000000000000001' as of FloorPlan2"
+    says "cannot read mixed/FloorPlan10.scene.safetensors: FloorPlan10: found features of 'frames@0123456789abcdef', expected 'frames@0000000000000001' as of FloorPlan2"
     fails 66 synpo-gen-expert -n 1 -w kitchen:empty
     says "no *.scene.safetensors in the folder 'empty'"
     fails 66 synpo-gen-expert -n 1 -w kitchen:none

@@ -92,11 +92,16 @@ void RecordedKitchens::Prepared::check_layout(int layout) const {
 RecordedKitchens::RecordedKitchens(std::vector<RecordedKitchen> kitchens)
     : KitchenWorld(kitchens.empty() ? "" : kitchens.front().extractor) {
   for (RecordedKitchen& kitchen : kitchens) {
-    add_environment({kitchen.name, kitchen.hash, ""});
-    if (kitchen.extractor != extractor())
-      fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ",
-           quoted(extractor()), " as of ", environments()[0].name);
-    all_.push_back(std::make_shared<const Prepared>(std::move(kitchen)));
+    const std::string source = kitchen.source;
+    try {
+      add_environment({kitchen.name, kitchen.hash, ""});
+      if (kitchen.extractor != extractor())
+        fail(Exit::kData, kitchen.name, ": found features of ", quoted(kitchen.extractor), ", expected ",
+             quoted(extractor()), " as of ", environments()[0].name);
+      all_.push_back(std::make_shared<const Prepared>(std::move(kitchen)));
+    } catch (const Error& error) {
+      throw source.empty() ? error : error.at("cannot read " + source + ": ");
+    }
   }
 }
 

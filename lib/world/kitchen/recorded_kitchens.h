@@ -24,8 +24,9 @@ struct RecordedKitchen {
   // [layouts, doors, poses, kKitchenObjects + 1]: the row of the features, by the object in the hand, kEmptyHand for
   // none; -1 where there is none.
   std::vector<int32_t> view;
-  bool halves = true;    // features are Half, else float
-  std::string features;  // [rows, kViewFeatures], as in memory
+  bool halves = true;       // features are Half, else float
+  std::string features;     // [rows, kViewFeatures], as in memory
+  std::string source = "";  // where it was read, for messages
 };
 
 class RecordedKitchens : public KitchenWorld {

@@ -7,6 +7,7 @@
 
 #include "base/half.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "helpers/kitchens.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
@@ -122,10 +123,12 @@ TEST(Scene, RefusesHostileFiles) {
   EXPECT_EQ(refused([](SafeTensors& f) { f.metadata["version"] = "0"; }), start + "version 0, this build reads 1 to 1");
   for (const char* value : {"", "-1", "1.0", "9999999999"})
     EXPECT_EQ(refused([&](SafeTensors& f) { f.metadata["rules"] = value; }),
-              concat(start, "metadata 'rules': found '", value, "', expected a whole number"));
+              concat(start, "metadata 'rules': found '", value, "', expected a whole number from 0 to 999999999"));
   for (const char* value : {"", "a\tb", "a\nb", "\x7f"})
     EXPECT_EQ(refused([&](SafeTensors& f) { f.metadata["env"] = value; }),
-              start + "metadata 'env': found " + quoted(value) + ", expected a name");
+              start + "metadata 'env': " + fault_of_name(value));
+  EXPECT_EQ(refused([](SafeTensors& f) { f.metadata["env"] = std::string(256, 'x'); }),
+            start + "metadata 'env': found a name of 256 bytes, expected at most 255");
   EXPECT_NE(refused([](SafeTensors& f) { f.metadata["extractor_hash"] = "abc"; }), "nothing thrown");
   const int64_t poses = good.tensors.at("poses").shape[0], rows = good.tensors.at("features").shape[0];
   const auto tensor_start = [&](const std::string& name) { return start + "tensor '" + name + "': "; };
