@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <random>
+#include <vector>
 
 #include "base/error.h"
 #include "base/hash.h"
@@ -101,12 +102,33 @@ Descriptor make_and_hold(const Pattern& pattern, Leftover::Kind kind, Make make,
   return Descriptor();
 }
 
+// A file that somebody removed is still there for who has it open: puts its bytes under that name again.
+bool restore(int fd, const std::string& path) {
+  struct stat status;
+  if (fstat(fd, &status) != 0 || status.st_nlink > 0) return false;
+  Descriptor copy(open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0600));
+  if (!copy) return false;
+  std::vector<char> part(1 << 16);
+  bool whole = true;
+  for (off_t at = 0; whole && at < status.st_size;) {
+    const ssize_t got = pread(fd, part.data(), part.size(), at);
+    whole = got > 0 && write_all(copy.get(), {part.data(), size_t(got)});
+    at += got;
+  }
+  whole = whole && fchmod(copy.get(), status.st_mode & 0777) == 0 && fsync(copy.get()) == 0 && copy.close();
+  if (!whole) unlink(path.c_str());
+  return whole;
+}
+
 // For what cannot have its name: the reason in errno, and the name that it is kept under, which is no temporary's,
 // since those are removed by the next run.
 std::string keep(const std::string& path, const std::string& ending) {
   const int error = errno;
   std::string kept = path.substr(0, path.size() - ending.size() - std::strlen(kPart)) + ending;
-  if (rename(path.c_str(), kept.c_str()) != 0) kept = path;
+  if (rename(path.c_str(), kept.c_str()) != 0) {
+    if (access(path.c_str(), F_OK) != 0) return concat(std::strerror(error), "; its temporary '", path, "' is gone");
+    kept = path;
+  }
   return concat(std::strerror(error), "; it is kept as '", kept, "'");
 }
 
@@ -141,7 +163,8 @@ void UnfinishedFile::publish() {
     fchmod(fd(), destination_.status.st_mode & 0777);
   }
   const std::string& target = destination_.target;
-  const bool renamed = rename(path_.c_str(), target.c_str()) == 0;
+  const auto rename_it = [&] { return rename(path_.c_str(), target.c_str()) == 0; };
+  const bool renamed = rename_it() || (errno == ENOENT && restore(fd(), path_) && rename_it());
   const std::string kept = renamed ? "" : keep(path_, ending_);
   leftover_.reset();
   if (!renamed) fail(Exit::kIo, "cannot rename to '", destination_.path, "': ", kept);

@@ -25,8 +25,8 @@ class UnfinishedFile {
 
   int fd() const { return file_.get(); }
   const std::string& path() const { return path_; }
-  // Flushed to the disk, it takes the destination's name. Throws kIo; where it cannot have the name it is kept under
-  // another, which the message tells.
+  // Flushed to the disk, it takes the destination's name, even if somebody has removed it. Throws kIo; where it cannot
+  // have the name it is kept under another, which the message tells.
   void publish();
 
  private:

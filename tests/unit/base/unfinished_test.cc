@@ -40,6 +40,28 @@ TEST(UnfinishedFile, IsRemovedByTheNextOneOnceNobodyHoldsIt) {
   EXPECT_EQ(folder.files(), 2u);
 }
 
+TEST(UnfinishedFile, IsWrittenAgainWhereSomebodyRemovedIt) {
+  const TemporaryFolder folder;
+  const std::string target = folder.file("x"), whole(200000, 'w');
+  UnfinishedFile file(Destination::find(target));
+  ASSERT_TRUE(write_all(file.fd(), whole));
+  fs::remove(file.path());
+  file.publish();
+  EXPECT_EQ(contents(target), whole);
+  EXPECT_EQ(folder.files(), 1u);
+}
+
+TEST(UnfinishedFile, SaysSoWhereItsFolderIsGone) {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.file("d"));
+  UnfinishedFile file(Destination::find(folder.file("d/x")));
+  ASSERT_TRUE(write_all(file.fd(), "whole"));
+  fs::remove_all(folder.file("d"));
+  const std::string message = thrown([&] { file.publish(); });
+  EXPECT_TRUE(message.starts_with("74 cannot rename to '")) << message;
+  EXPECT_TRUE(message.ends_with("' is gone")) << message;
+}
+
 TEST(UnfinishedFile, IsKeptWhereItCannotHaveItsName) {
   const TemporaryFolder folder;
   const std::string target = folder.file("x");
