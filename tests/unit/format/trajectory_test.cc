@@ -48,11 +48,11 @@ void expect_equal(const Trajectory& a, const Trajectory& b) {
 }
 
 TEST(Trajectory, IsOneLineOfPlainJson) {
-  EXPECT_EQ(
-      format_trajectory(short_trajectory()),
-      R"({"format":"synpo-trajectory","version":1,"world":"gridworld","rules":1,"env":"map3","task":"R-B","env_hash":"fedcba9876543210",)"
-      R"("window":2,"seed":18446744073709551615,"episode":9223372036854775807,"start":{"R":[1,14],"agent":[3,4]},"actions":[0,4,3],)"
-      R"("labels":[0,4,1],"rewards":[-0.01,0.99,10.99],"return":11.97,"success":true,"terminated":true,"truncated":false})");
+  EXPECT_EQ(format_trajectory(short_trajectory()),
+            R"({"format":"synpo-trajectory","version":1,"world":"gridworld","rules":1,"env":"map3","task":"R-B",)"
+            R"("env_hash":"fedcba9876543210","window":2,"seed":18446744073709551615,"episode":9223372036854775807,)"
+            R"("start":{"R":[1,14],"agent":[3,4]},"actions":[0,4,3],"labels":[0,4,1],"rewards":[-0.01,0.99,10.99],)"
+            R"("return":11.97,"success":true,"terminated":true,"truncated":false})");
 }
 
 TEST(Trajectory, ComesBack) {
