@@ -48,7 +48,8 @@ Q   := @
 say = @printf '%-4s %s\n' '$(1)' '$(2)'
 endif
 
-# Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs them.
+# Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs
+# them.
 MAKEFLAGS += -j$(shell nproc)
 ifneq ($(filter deps,$(MAKECMDGOALS)),)
 $(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ) $(B)/tests/bench/synpo-bench.o $(STD): | deps
@@ -90,7 +91,8 @@ $(B)/tests/bench/synpo-bench.o: OPTIMISE = -O3 -march=native
 # Only lib/draw/canvas and lib/draw/vision, and the tests of drawing, see OpenCV.
 $(B)/lib/draw/canvas/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(OPENCV_CFLAGS)
 
-# Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same level.
+# Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same
+# level.
 $(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
 	@mkdir -p $(@D)
 	$(call say,CXX,$< for $*)

@@ -20,7 +20,8 @@ set_up() {
 
 setup() { set_up; }
 
-# make_inputs: the files that one test file's tests share, made once: pairs.tsv, e.jsonl (60 trajectories of them), a.ckpt (stripped), m.tsv.
+# make_inputs: the files that one test file's tests share, made once: pairs.tsv, e.jsonl (60 trajectories of them),
+# a.ckpt (stripped), m.tsv.
 make_inputs() {
     cd "$BATS_FILE_TMPDIR" || exit
     synpo-matrix split --envs 3 --tasks 3 -n 5 -s 1 >pairs.tsv

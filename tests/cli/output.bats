@@ -6,7 +6,8 @@ setup() {
     printf 'update\tstates\tseen_success\tunseen_success\n1\t9\t0.5\tNA\n2\t18\t0.7\t0.4\n' >run.log
 }
 
-# Calls `$1 COMMAND...` for every command that writes, with standard input where it needs some; </dev/stdin begins it anew.
+# Calls `$1 COMMAND...` for every command that writes, with standard input where it needs some; </dev/stdin begins it
+# anew.
 for_writers() {
     "$1" synpo-gen-expert -n 3
     "$1" synpo-gen-expert --relabel <e.jsonl

@@ -1,4 +1,5 @@
-# scripts/reproduce with tools that only note how they were called: what is run, in which order, and what is not run again.
+# scripts/reproduce with tools that only note how they were called: what is run, in which order, and what is not run
+# again.
 load common
 
 # A copy of the scripts whose tools stand in for the real ones. A training fails once where a file `stop` names its run.

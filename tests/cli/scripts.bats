@@ -112,8 +112,8 @@ END
 # kernel TARGET TEXT: an object of that name, with this in the namespace that it should stay in.
 kernel() { echo "namespace synpo::$1 { $2 } ${3-}" | g++ -std=c++17 -x c++ -c -o "build/lib/kernel/target_$1.o" -; }
 
-# check UNIT CASES: scripts/check over a unit test program and a test file made of these texts (TEST stands for bats' own
-# word, which this file cannot hold); its last line in $last.
+# check UNIT CASES: scripts/check over a unit test program and a test file made of these texts (TEST stands for bats'
+# own word, which this file cannot hold); its last line in $last.
 check() {
     mkdir -p build/lib/kernel cli
     [ -e build/lib/kernel/target_plain.o ] || kernel plain 'int mine() { return 1; }'

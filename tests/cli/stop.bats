@@ -8,7 +8,8 @@ teardown() {
 }
 
 # begin LINES OPTION...: training in the background that has got the first LINES lines of e.jsonl and waits for more.
-# Each update reads one, so that it is known where it stands. A script's shell has SIGINT ignored in the background, and ignored it would stay.
+# Each update reads one, so that it is known where it stands. A script's shell has SIGINT ignored in the background,
+# and ignored it would stay.
 begin() {
     local lines=$1
     shift

@@ -27,7 +27,8 @@ from types import SimpleNamespace
 for key in [k for k in os.environ if k.startswith("OPENBLAS_")]:
     del os.environ[key]
 if sys.argv[1:2] == ["bench"]:
-    # OpenBLAS multiplies with SSE3 on a processor newer than itself: at a quarter of the rate that it has with what the processor can.
+    # OpenBLAS multiplies with SSE3 on a processor newer than itself: at a quarter of the rate that it has with what
+    # the processor can.
     with open("/proc/cpuinfo") as file:
         flags = set(next((line for line in file if line.startswith("flags")), "").split())
     for core, needed in (("SkylakeX", {"avx512f", "avx512bw", "avx512dq", "avx512vl"}), ("Haswell", {"avx2", "fma"})):

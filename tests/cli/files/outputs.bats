@@ -7,7 +7,8 @@ teardown() {
     [ -z "${pid-}" ] || kill -9 "$pid" 2>/dev/null || true
 }
 
-# refused_before CODE OUTPUT: a training is told CODE for -o OUTPUT although its stream is broken too, which would be 65.
+# refused_before CODE OUTPUT: a training is told CODE for -o OUTPUT although its stream is broken too, which would be
+# 65.
 refused_before() {
     fails "$1" synpo-train -q -n 3 -o "$2" <two.tsv
 }

@@ -14,7 +14,8 @@ teardown() {
     [ -z "${pid-}" ] || kill -9 "$pid" 2>/dev/null || true
 }
 
-# stops SIGNAL CODE LINES COMMAND...: the command has the first LINES lines of e.jsonl and waits for more; the signal ends it with CODE.
+# stops SIGNAL CODE LINES COMMAND...: the command has the first LINES lines of e.jsonl and waits for more; the signal
+# ends it with CODE.
 stops() {
     local signal=$1 code=$2 lines=$3 status=0 i
     shift 3
