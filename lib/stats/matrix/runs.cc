@@ -49,7 +49,7 @@ std::pair<int64_t, int64_t> Group::updates() const {
   return {least->updates, most->updates};
 }
 
-std::vector<Group> gather(const Matrix& matrix) {
+std::vector<Group> group_runs(const Matrix& matrix) {
   struct Place {
     size_t group, run;
   };

@@ -47,7 +47,7 @@ struct Group {
 
 // Groups in the order of their first row, and so with runs and pairs. Rows are taken as they are: merge_matrices first
 // keeps double counting out.
-std::vector<Group> gather(const Matrix& matrix);
+std::vector<Group> group_runs(const Matrix& matrix);
 
 // "synpo on gridworld, window 1, 20000 updates, temperature 0.5: 3 runs (seeds 1 2 3)"
 std::string heading(const Group& group);

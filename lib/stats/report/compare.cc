@@ -72,7 +72,7 @@ std::pair<Matrix, Matrix> common_rows(const Matrix& a, const Matrix& b, bool any
 }
 
 Group only_group(const MatrixSource& source) {
-  std::vector<Group> groups = gather(source.matrix);
+  std::vector<Group> groups = group_runs(source.matrix);
   if (groups.size() > 1) {
     const bool temperatures = std::all_of(groups.begin(), groups.end(), [&](const Group& group) {
       return group.world == groups[0].world && group.window == groups[0].window && group.method == groups[0].method;

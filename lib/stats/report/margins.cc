@@ -61,7 +61,7 @@ std::vector<GroupMargins> margins(const Matrix& matrix, Axis axis) {
     fail(Exit::kData, "the environment ", quoted(env),
          " is not the same in all rows (env_hash): other ones go by its name, look at the runs one by one");
   std::vector<GroupMargins> all;
-  for (Group& group : gather(matrix)) {
+  for (Group& group : group_runs(matrix)) {
     std::vector<Margin> lines = margins_of(group, axis);
     all.push_back({std::move(group), std::move(lines)});
   }

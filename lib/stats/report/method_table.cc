@@ -94,7 +94,7 @@ std::string label_of(const Group& group, const std::vector<Group>& groups) {
 MethodTable tabulate(const Matrix& matrix, const std::vector<std::string>& subsets, const MeasureKind& measure,
                      const std::optional<BootstrapPlan>& bootstrap) {
   MethodTable table{&measure, subsets, {}, bootstrap, mixed_environment(matrix)};
-  const std::vector<Group> groups = gather(matrix);
+  const std::vector<Group> groups = group_runs(matrix);
   for (const Group& group : groups) {
     TableLine line{label_of(group, groups), group.world, group.method, group.window, group.temperature, {}};
     for (const std::string& subset : subsets) line.cells.push_back(cell_of(group, subset, measure, bootstrap));

@@ -74,7 +74,7 @@ std::vector<std::string> notes_on(const Group& group) {
 
 std::vector<GroupSummary> summarise(const Matrix& matrix) {
   std::vector<GroupSummary> summaries;
-  for (const Group& group : gather(matrix)) {
+  for (const Group& group : group_runs(matrix)) {
     const auto [least, most] = group.updates();
     GroupSummary summary{
         heading(group), group.world, group.method, group.window,   group.temperature, int64_t(group.runs.size()),
