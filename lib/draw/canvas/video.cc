@@ -32,6 +32,9 @@ const Format& format_of(const std::string& path) {
 }  // namespace
 
 struct Video::Writer {
+  Writer(const std::string& path, const Destination& destination, const char* extension, int width, int height)
+      : use(path, destination.identity()), file(destination, extension), bgr(height, width, CV_8UC3) {}
+
   OutputUse use;
   UnfinishedFile file;
   cv::VideoWriter video;
@@ -44,10 +47,7 @@ Video::Video(const std::string& path, double frames_per_second, int width, int h
   if (destination.kind != Destination::Kind::kFile)
     fail(Exit::kUsage, "cannot write the video '", path, "': expected a file, found a device or a pipe");
   destination.check_replaceable();
-  writer_.reset(new Writer{OutputUse(path, destination.identity()),
-                           UnfinishedFile(destination, format.extension),
-                           {},
-                           cv::Mat(height, width, CV_8UC3)});
+  writer_ = std::make_unique<Writer>(path, destination, format.extension, width, height);
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
   const auto& c = format.code;
   if (!writer_->video.open(writer_->file.path(), format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]),

@@ -25,7 +25,7 @@ namespace synpo {
 
 class GridFace : public WorldFace {
  public:
-  explicit GridFace(std::shared_ptr<const GridSet> world) : WorldFace(world), grid_(*world) {}
+  explicit GridFace(const std::shared_ptr<const GridSet>& world) : WorldFace(world), grid_(*world) {}
 
   static const FaceKind kKind;
   const FaceKind& kind() const override { return kKind; }

@@ -16,7 +16,7 @@ const FaceKind KitchenFace::kKind = {.environment = "kitchen",
                                      .has_text = false,
                                      .has_policy_picture = false};
 
-KitchenFace::KitchenFace(std::shared_ptr<const KitchenSet> world) : WorldFace(world), set_(*world) {
+KitchenFace::KitchenFace(const std::shared_ptr<const KitchenSet>& world) : WorldFace(world), set_(*world) {
   for (const Environment& env : set_.environments())
     kitchens_.push_back(parse_kitchen(env.name, env.content, env.name));
 }

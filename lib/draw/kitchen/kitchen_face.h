@@ -30,7 +30,7 @@ struct KitchenEvent {
 
 class KitchenFace : public WorldFace {
  public:
-  explicit KitchenFace(std::shared_ptr<const KitchenSet> world);
+  explicit KitchenFace(const std::shared_ptr<const KitchenSet>& world);
 
   static const FaceKind kKind;
   const FaceKind& kind() const override { return kKind; }
