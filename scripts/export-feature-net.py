@@ -1,5 +1,6 @@
 #!/usr/bin/python3
-"""export-feature-net.py FILE: a network for synpo-render features, as ONNX: a ResNet-101 of torchvision without its last layer.
+"""export-feature-net.py FILE: a network for synpo-render features, as ONNX: a ResNet-101 of torchvision without its
+last layer.
 
 Needs torch and torchvision (Debian: python3-torch and python3-torchvision).
 """
@@ -15,7 +16,8 @@ def small():
     for width in (32, 64, 128):
         layers += [torch.nn.Conv2d(channels, width, 5, stride=4, padding=2), torch.nn.ReLU()]
         channels = width
-    return torch.nn.Sequential(*layers, torch.nn.Conv2d(channels, 2048, 1), torch.nn.ReLU(), torch.nn.AdaptiveAvgPool2d(1), torch.nn.Flatten())
+    return torch.nn.Sequential(*layers, torch.nn.Conv2d(channels, 2048, 1), torch.nn.ReLU(),
+                               torch.nn.AdaptiveAvgPool2d(1), torch.nn.Flatten())
 
 
 def resnet(weights):
@@ -39,7 +41,8 @@ def resnet(weights):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("file", help="where the network goes")
-    parser.add_argument("--weights", metavar="NAME", help="torchvision's weights, which it downloads, such as IMAGENET1K_V2 (random ones)")
+    parser.add_argument("--weights", metavar="NAME",
+                        help="torchvision's weights, which it downloads, such as IMAGENET1K_V2 (random ones)")
     parser.add_argument("--seed", type=int, default=1, help="seed of random weights (1)")
     parser.add_argument("--small", action="store_true", help="a small network of random weights in place of ResNet-101")
     args = parser.parse_args()

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """thor-dump.py KITCHEN... -o DIR: kitchens of AI2-THOR as scene files for -w kitchen:DIR (synpo-scene(5)).
 
-Needs what pip has as ai2thor, torch and torchvision, and a display or --headless. Layouts of the objects are drawn by AI2-THOR; what is visible from
-every pose, with the doors of fridge and microwave open and closed, is what AI2-THOR says, and each view's features are those of a ResNet-101 trained on
-ImageNet, in front of its last layer.
+Needs what pip has as ai2thor, torch and torchvision, and a display or --headless. Layouts of the objects are drawn by
+AI2-THOR; what is visible from every pose, with the doors of fridge and microwave open and closed, is what AI2-THOR
+says, and each view's features are those of a ResNet-101 trained on ImageNet, in front of its last layer.
 """
 import argparse
 import hashlib
@@ -35,7 +35,8 @@ def write_safetensors(path, metadata, tensors):
     order = sorted(tensors, key=lambda name: (-tensors[name].itemsize, name))
     for name in order:
         tensor = tensors[name]
-        header[name] = {"dtype": names[tensor.dtype], "shape": list(tensor.shape), "data_offsets": [at, at + tensor.nbytes]}
+        header[name] = {"dtype": names[tensor.dtype], "shape": list(tensor.shape),
+                        "data_offsets": [at, at + tensor.nbytes]}
         at += tensor.nbytes
     text = json.dumps(header).encode()
     text += b" " * (-len(text) % 8)
@@ -95,7 +96,8 @@ class Rows:
 
 
 class Kitchen:
-    """One scene of a controller, on its grid: row 0 is its northernmost, where z is greatest; column 0 its westernmost."""
+    """One scene of a controller, on its grid: row 0 is its northernmost, where z is greatest; column 0 its
+    westernmost."""
 
     def __init__(self, controller, name, container):
         self.controller, self.name = controller, name
@@ -105,7 +107,8 @@ class Kitchen:
         self.west = min(p["x"] for p in positions)
         self.north = max(p["z"] for p in positions)
         cells = {self.cell(p): p for p in positions}
-        self.poses = [(r, c, heading, horizon) for r, c in sorted(cells) for heading in HEADINGS for horizon in HORIZONS]
+        self.poses = [(r, c, heading, horizon) for r, c in sorted(cells) for heading in HEADINGS
+                      for horizon in HORIZONS]
         self.positions = [cells[pose[:2]] for pose in self.poses]
 
     def step(self, **action):
@@ -124,15 +127,18 @@ class Kitchen:
         for pose in self.poses:
             row, column, heading, horizon = pose
             ahead = {0: (-1, 0), 90: (0, 1), 180: (1, 0), 270: (0, -1)}[heading]
-            after = [(row + ahead[0], column + ahead[1], heading, horizon), (row, column, (heading + 270) % 360, horizon),
-                     (row, column, (heading + 90) % 360, horizon), (row, column, heading, horizon - 30), (row, column, heading, horizon + 30)]
+            after = [(row + ahead[0], column + ahead[1], heading, horizon),
+                     (row, column, (heading + 270) % 360, horizon),
+                     (row, column, (heading + 90) % 360, horizon), (row, column, heading, horizon - 30),
+                     (row, column, heading, horizon + 30)]
             rows.append([number.get(to, number[pose]) for to in after])
         return rows
 
     def spawn(self, seed):
         """Puts the objects somewhere else. The first of each type is the one that tasks mean."""
         self.controller.reset(scene=self.name)
-        event = self.step(action="InitialRandomSpawn", randomSeed=seed, forceVisible=False, numPlacementAttempts=5, placeStationary=True)
+        event = self.step(action="InitialRandomSpawn", randomSeed=seed, forceVisible=False, numPlacementAttempts=5,
+                          placeStationary=True)
         things = {o["objectType"]: o for o in reversed(event.metadata["objects"])}
         wanted = [self.types.get(name, name) for name in OBJECTS + RECEPTACLES]
         missing = [name for name in wanted if name not in things]
@@ -143,17 +149,20 @@ class Kitchen:
 
     def set_doors(self, doors):
         for i in range(2):
-            self.step(action="OpenObject" if doors >> i & 1 else "CloseObject", objectId=self.ids[len(OBJECTS) + i], forceAction=True)
+            self.step(action="OpenObject" if doors >> i & 1 else "CloseObject", objectId=self.ids[len(OBJECTS) + i],
+                      forceAction=True)
 
     def stand(self, pose):
         p = self.positions[pose]
-        return self.step(action="TeleportFull", x=p["x"], y=p["y"], z=p["z"], rotation={"x": 0, "y": self.poses[pose][2], "z": 0},
+        return self.step(action="TeleportFull", x=p["x"], y=p["y"], z=p["z"],
+                         rotation={"x": 0, "y": self.poses[pose][2], "z": 0},
                          horizon=self.poses[pose][3], standing=True, forceAction=True)
 
     def distances(self, event):
         """Of objects, then receptacles: horizontal millimetres, -1 where not visible."""
         things, agent = {o["objectId"]: o for o in event.metadata["objects"]}, event.metadata["agent"]["position"]
-        return [round(1000 * math.hypot(o["position"]["x"] - agent["x"], o["position"]["z"] - agent["z"])) if o["visible"] else -1
+        return [round(1000 * math.hypot(o["position"]["x"] - agent["x"], o["position"]["z"] - agent["z"]))
+                if o["visible"] else -1
                 for o in (things[name] for name in self.ids)]
 
     def views(self, event, rows):
@@ -173,7 +182,8 @@ def dump(controller, name, layouts, extract, container, progress=say):
     objects, distance, view, seed = [], [], [], 0
     while len(objects) < layouts:
         if seed >= 10 * layouts + 10:
-            raise RuntimeError("%s: found %d layouts in which everything can be picked up, expected %d" % (name, len(objects), layouts))
+            raise RuntimeError("%s: found %d layouts in which everything can be picked up, expected %d"
+                               % (name, len(objects), layouts))
         cells = kitchen.spawn(seed)
         seed += 1
         found, seen = [], []
@@ -183,9 +193,11 @@ def dump(controller, name, layouts, extract, container, progress=say):
                 event = kitchen.stand(pose)
                 found.append(kitchen.distances(event))
                 seen.append(kitchen.views(event, rows))
-        nearest = {min((d, i) for i, d in enumerate(near[:len(OBJECTS)]) if d >= 0)[1] for near in found if max(near[:len(OBJECTS)]) >= 0}
+        nearest = {min((d, i) for i, d in enumerate(near[:len(OBJECTS)]) if d >= 0)[1] for near in found
+                   if max(near[:len(OBJECTS)]) >= 0}
         if cells in objects or len(nearest) < len(OBJECTS):
-            progress("%s: seed %d passed over: %s" % (name, seed - 1, "as another" if cells in objects else "something cannot be picked up"))
+            progress("%s: seed %d passed over: %s"
+                     % (name, seed - 1, "as another" if cells in objects else "something cannot be picked up"))
             continue
         objects.append(cells)
         distance.append(found)
@@ -193,7 +205,8 @@ def dump(controller, name, layouts, extract, container, progress=say):
         progress("%s: layout %d of %d" % (name, len(objects), layouts))
     poses = len(kitchen.poses)
     distance = numpy.array(distance, "<i4").reshape(layouts, DOORS, poses, -1)
-    metadata = {"format": "synpo-scene", "version": "1", "env": name, "rules": "1", "extractor": extract.name, "extractor_hash": extract.hash}
+    metadata = {"format": "synpo-scene", "version": "1", "env": name, "rules": "1", "extractor": extract.name,
+                "extractor_hash": extract.hash}
     return metadata, {
         "poses": numpy.array(kitchen.poses, "<i4"),
         "starts": numpy.array([i for i, pose in enumerate(kitchen.poses) if pose[3] == 0], "<i4"),
@@ -211,8 +224,10 @@ def main():
     parser.add_argument("kitchens", nargs="+", metavar="KITCHEN", help="FloorPlan1 to FloorPlan30")
     parser.add_argument("-o", "--output", required=True, metavar="DIR", help="the folder for the scene files")
     parser.add_argument("--layouts", type=int, default=1, metavar="N", help="layouts of the objects in each (1)")
-    parser.add_argument("--container", default="Pot", metavar="TYPE", help="AI2-THOR's type that takes the part of Container (Pot)")
-    parser.add_argument("--weights", default="IMAGENET1K_V2", metavar="NAME", help="torchvision's weights of ResNet-101 (IMAGENET1K_V2)")
+    parser.add_argument("--container", default="Pot", metavar="TYPE",
+                        help="AI2-THOR's type that takes the part of Container (Pot)")
+    parser.add_argument("--weights", default="IMAGENET1K_V2", metavar="NAME",
+                        help="torchvision's weights of ResNet-101 (IMAGENET1K_V2)")
     parser.add_argument("--headless", action="store_true", help="render without a display (CloudRendering)")
     args = parser.parse_args()
 
@@ -221,12 +236,14 @@ def main():
     if args.headless:
         import ai2thor.platform
         more["platform"] = ai2thor.platform.CloudRendering
-    controller = ai2thor.controller.Controller(scene=args.kitchens[0], gridSize=GRID_METRES, snapToGrid=True, visibilityDistance=1.5, fieldOfView=60,
+    controller = ai2thor.controller.Controller(scene=args.kitchens[0], gridSize=GRID_METRES, snapToGrid=True,
+                                               visibilityDistance=1.5, fieldOfView=60,
                                                width=224, height=224, renderInstanceSegmentation=True, **more)
     extract = ResNet(args.weights)
     os.makedirs(args.output, exist_ok=True)
     for name in args.kitchens:
-        write_safetensors(os.path.join(args.output, name + ".scene.safetensors"), *dump(controller, name, args.layouts, extract, args.container))
+        write_safetensors(os.path.join(args.output, name + ".scene.safetensors"),
+                          *dump(controller, name, args.layouts, extract, args.container))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,8 @@ load common
 overflow() {
     local header begin end
     header=$(od -An -tu8 -N8 "$2" | tr -d ' ')
-    read -r begin end < <(head -c $((8 + header)) "$2" | tail -c "$header" | jq -r --arg name "$1" '.[$name].data_offsets | @tsv')
+    read -r begin end < <(head -c $((8 + header)) "$2" | tail -c "$header" |
+        jq -r --arg name "$1" '.[$name].data_offsets | @tsv')
     head -c $((8 + header + begin)) "$2"
     # 1.7e38, four bytes each.
     head -c $((end - begin)) /dev/zero | tr '\0' '\1' | sed 's/\x01\x01\x01\x01/\x00\x00\x00\x7f/g'
@@ -24,7 +25,8 @@ setup_file() {
 setup() { set_up e.jsonl a.ckpt m.tsv other.jsonl both.tsv seed7.tsv huge.ckpt; }
 
 # The last line on stderr is just this.
-says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] || complain "found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1'"; }
+says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] ||
+    complain "found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1'"; }
 
 @test "an unknown maze: -w" {
     why="standard input: line 1: unknown env 'map21' (other maps? see -w)"

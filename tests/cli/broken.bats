@@ -139,8 +139,10 @@ matrix_fails() {
 }
 
 @test "a broken line among trajectories: 65, with its number" {
-    for damage in '3s/.$//' '3s/^/x/' '3s/"env":/"ent":/' '3s/"actions":\[/&9,/' '3s/"success":true/"success":1/' '3s/.*/[]/' \
-        '3s/.*/null/' '3s/"map[0-9]*"/"map99"/' '3s/"task":"..."/"task":"R-R"/' '3s/"env_hash":".*","window"/"env_hash":"0","window"/' \
+    for damage in '3s/.$//' '3s/^/x/' '3s/"env":/"ent":/' '3s/"actions":\[/&9,/' '3s/"success":true/"success":1/' \
+        '3s/.*/[]/' \
+        '3s/.*/null/' '3s/"map[0-9]*"/"map99"/' '3s/"task":"..."/"task":"R-R"/' \
+        '3s/"env_hash":".*","window"/"env_hash":"0","window"/' \
         '3s/"start":{/&"agent":[0,0],"x":/' '3s/"rules":1/"rules":9/' '3s/"world":"gridworld"/"world":"kitchen"/'; do
         sed "$damage" e.jsonl >bad.jsonl
         trajectories_fail 65 bad.jsonl
@@ -156,7 +158,8 @@ matrix_fails() {
     sed '17s/"rewards":\[-0.01/"rewards":[0.99/' e.jsonl >bad.jsonl
     trajectories_fail 65 bad.jsonl
     says "line 17: replay gives reward -0.01 at step 1, file says 0.99: other maps?"
-    sed '2s/"actions":\[\([0-9]\),.*\],"rewards":\[\(-0.01\).*\],"return"/"actions":[\1],"rewards":[\2],"return"/' e.jsonl >bad.jsonl
+    sed '2s/"actions":\[\([0-9]\),.*\],"rewards":\[\(-0.01\).*\],"return"/"actions":[\1],"rewards":[\2],"return"/' \
+        e.jsonl >bad.jsonl
     trajectories_fail 65 bad.jsonl
     says "line 2: replay and file differ"
 }
@@ -197,7 +200,8 @@ END
 }
 
 @test "broken matrices: 65, with line and column" {
-    for damage in '2s/\t/ /' '2s/[^\t]*\t[^\t]*$/x\t0.5/' '2s/[^\t]*\t[^\t]*$/nan\t0.5/' '2s/[^\t]*$/1\t1/' '1s/episodes/runs/' '1s/task/env/' '2s/R-B/R\xffB/'; do
+    for damage in '2s/\t/ /' '2s/[^\t]*\t[^\t]*$/x\t0.5/' '2s/[^\t]*\t[^\t]*$/nan\t0.5/' '2s/[^\t]*$/1\t1/' \
+        '1s/episodes/runs/' '1s/task/env/' '2s/R-B/R\xffB/'; do
         sed "$damage" m.tsv >bad.tsv
         run ! cmp -s m.tsv bad.tsv
         fails 65 synpo-matrix summary -o out bad.tsv
@@ -208,7 +212,8 @@ END
     matrix_fails 65 cut.tsv
     says "cut.tsv: line 3"
     # More successes than episodes.
-    awk -F '\t' 'BEGIN { OFS = FS } NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } NR == 2 { $at["successes"] = 2 } { print }' m.tsv >bad.tsv
+    awk -F '\t' 'BEGIN { OFS = FS } NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } NR == 2 { $at["successes"] = 2 }
+        { print }' m.tsv >bad.tsv
     matrix_fails 65 bad.tsv
     says "bad.tsv: line 2"
     fails 65 synpo-matrix merge m.tsv m.tsv

@@ -58,7 +58,8 @@ fails() {
     before=$(find . | sort)
     "$@" >"${OUT:-$BATS_TEST_TMPDIR/out}" 2>"$BATS_TEST_TMPDIR/err" || status=$?
     [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat "$BATS_TEST_TMPDIR/err")"
-    tail -n 1 "$BATS_TEST_TMPDIR/err" | grep -q "^$1: ." || complain "$*: found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1: ...'"
+    tail -n 1 "$BATS_TEST_TMPDIR/err" | grep -q "^$1: ." ||
+        complain "$*: found '$(cat "$BATS_TEST_TMPDIR/err")', expected '$1: ...'"
     case $1 in
         synpo-matrix | synpo-render | synpo-finetune) [[ ${2-} != [a-z]* ]] || command=("$1" "$2") ;;
     esac
@@ -83,7 +84,8 @@ described() {
 tensor() {
     local size begin end
     size=$(od -An -tu8 -N8 "$1" | tr -d ' ')
-    read -r begin end < <(head -c $((8 + size)) "$1" | tail -c "$size" | jq -r --arg name "$2" '.[$name].data_offsets | @tsv')
+    read -r begin end < <(head -c $((8 + size)) "$1" | tail -c "$size" |
+        jq -r --arg name "$2" '.[$name].data_offsets | @tsv')
     tail -c +$((9 + size + begin)) "$1" | head -c $((end - begin))
 }
 

@@ -20,14 +20,16 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     synpo-eval -q -p p.tsv -n 1 <a.ckpt >got
     synpo-matrix merge got >merged
     cmp got merged
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["task"], $at["seen"], $at["part"] }' got >rows
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+        { print $at["env"], $at["task"], $at["seen"], $at["part"] }' got >rows
     seen=$(described a.ckpt 'if .seen | index([["map1", "R-B"]]) then 1 else 0 end')
     printf 'map9 O-P 0 rest\nmap1 R-B %d P\n' "$seen" | cmp - rows
 }
 
 @test "without -p: all pairs of the checkpoint's world" {
     mkdir maps
-    awk 'BEGIN { for (r = 0; r < 16; ++r) { for (c = 0; c < 16; ++c) printf "%s", r % 15 && c % 15 ? " " : "#"; print "" } }' >maps/map1.txt
+    awk 'BEGIN { for (r = 0; r < 16; ++r) { for (c = 0; c < 16; ++c) printf "%s", r % 15 && c % 15 ? " " : "#";
+        print "" } }' >maps/map1.txt
     synpo-gen-expert -w gridworld:maps -n 20 >hall.jsonl
     synpo-train "${TINY[@]}" -n 1 -w gridworld:maps --strip <hall.jsonl >hall.ckpt
     synpo-eval -q -n 1 <hall.ckpt >got
@@ -39,7 +41,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     head -n 4 p.tsv >three.tsv
     synpo-gen-expert -p three.tsv -n 20 | synpo-train "${TINY[@]}" -p three.tsv -n 1 --strip >three.ckpt
     synpo-eval -p p.tsv -n 1 <three.ckpt >got 2>note
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["task"], $at["seen"], $at["new"] }' got >rows
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+        { print $at["env"], $at["task"], $at["seen"], $at["new"] }' got >rows
     printf 'map1 R-B 1 0\nmap1 B-G 1 0\nmap2 R-B 1 0\nmap2 B-G 0 0\nmap3 R-B 0 1\nmap1 O-P 0 1\n' | cmp - rows
     grep -q 'note: 2 of 6 pairs are new, not unseen' note
     synpo-matrix summary got | grep -q '^unseen  *1 '
@@ -54,7 +57,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
 
 @test "the matrix has the hash of each environment, as trajectories have it" {
     synpo-eval -q -p two.tsv -n 1 --record r.jsonl <a.ckpt >got
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["env_hash"] }' got | sort -u >hashes
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["env"], $at["env_hash"] }' got |
+        sort -u >hashes
     jq -r '.env + " " + .env_hash' r.jsonl | sort -u | cmp - hashes
 }
 
@@ -99,7 +103,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     jq -r -s 'group_by([.env, .task])[] | [.[0].env, .[0].task, length, (map(select(.success)) | length),
         (map(select(.truncated)) | length), (map(.actions | length) | add)] | @tsv' r.jsonl | sort >got
     awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; OFS = FS; next }
-        { print $at["env"], $at["task"], $at["episodes"], $at["successes"], $at["timeouts"], $at["length"] }' m4.tsv | sort | cmp - got
+        { print $at["env"], $at["task"], $at["episodes"], $at["successes"], $at["timeouts"], $at["length"] }' m4.tsv |
+        sort | cmp - got
     fails 64 synpo-eval -q --record - -o - -c a.ckpt
 }
 
@@ -115,9 +120,11 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
 
 @test "--describe: JSON of what the checkpoint says, without the weights" {
     synpo-eval --describe <a.ckpt >description
-    jq -e '.format == "synpo-checkpoint" and .version == 1 and .method == "synpo" and .world == "gridworld" and .updates == 2
-        and (.envs | length) == 20 and (.envs[0].content | length) == 272 and (.tasks | length) == 20 and (.seen | length) == 5
-        and .options["batch-states"] == "64" and .shape.feature == 128 and (.weights_hash | test("^[0-9a-f]{16}$"))' description
+    jq -e '.format == "synpo-checkpoint" and .version == 1 and .method == "synpo" and .world == "gridworld"
+        and .updates == 2 and (.envs | length) == 20
+        and (.envs[0].content | length) == 272 and (.tasks | length) == 20 and (.seen | length) == 5
+        and .options["batch-states"] == "64" and .shape.feature == 128 and (.weights_hash | test("^[0-9a-f]{16}$"))' \
+        description
     [ "$(jq -r .weights_hash description)" = "$(awk -F '\t' 'NR == 2 { print $1 }' m.tsv)" ]
 }
 
@@ -136,7 +143,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     for t in 0 0.5 1; do synpo-eval -q -p two.tsv -n 9 --temperature $t <a.ckpt >t$t; done
     synpo-eval -q -p two.tsv -n 9 <a.ckpt | cmp - t0.5
     ! cmp -s t0 t1 || complain "greedy and drawn are the same"
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["temperature"] }' t0.5 | sort -u >got
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { print $at["temperature"] }' t0.5 |
+        sort -u >got
     echo 0.5 | cmp - got
     run -64 --separate-stderr synpo-eval --temperature -1 <a.ckpt
     run -64 --separate-stderr synpo-eval --temperature x <a.ckpt
@@ -195,9 +203,12 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     # The same policy, seed and pairs: with the same episodes both would find the same rewards.
     awk 'NR == 1 || $3 == 1' pairs.tsv | head -n 2 >one.tsv
     synpo-gen-expert -p one.tsv -n 20 >one.jsonl
-    synpo-train "${TINY[@]}" -n 1 -p one.tsv -s 1 --evaluate-every 1 --evaluate-episodes 40 --log log <one.jsonl >one.ckpt
+    synpo-train "${TINY[@]}" -n 1 -p one.tsv -s 1 --evaluate-every 1 --evaluate-episodes 40 --log log <one.jsonl \
+        >one.ckpt
     synpo-eval -q -p one.tsv -s 1 -n 40 <one.ckpt >matrix
-    log=$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { printf "%.4f", 40 * $at["seen_reward"] }' log)
-    tested=$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { printf "%.4f", $at["reward"] }' matrix)
+    log=$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+        { printf "%.4f", 40 * $at["seen_reward"] }' log)
+    tested=$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { printf "%.4f", $at["reward"] }' \
+        matrix)
     [ "$log" != "$tested" ] || complain "both earn $log"
 }

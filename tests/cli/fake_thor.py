@@ -1,4 +1,5 @@
-"""fake_thor.py DIR KITCHEN LAYOUTS: a scene file by scripts/thor-dump.py from a controller that answers as AI2-THOR's does, without Unity.
+"""fake_thor.py DIR KITCHEN LAYOUTS: a scene file by scripts/thor-dump.py from a controller that answers as AI2-THOR's
+does, without Unity.
 
 A room of 6 x 6 cells with everything around it; the first object of the list lies in the fridge.
 """
@@ -12,7 +13,8 @@ import types
 import numpy
 
 SIDE = 6
-spec = importlib.util.spec_from_file_location("thor_dump", os.path.join(os.path.dirname(__file__), "../../scripts/thor-dump.py"))
+spec = importlib.util.spec_from_file_location("thor_dump",
+                                              os.path.join(os.path.dirname(__file__), "../../scripts/thor-dump.py"))
 thor = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(thor)
 
@@ -28,7 +30,8 @@ class Controller:
 
     def spawn(self, seed):
         draw = random.Random("%s %s" % (self.scene, seed))
-        around = [(-1, i) for i in range(SIDE)] + [(SIDE, i) for i in range(SIDE)] + [(i, -1) for i in range(SIDE)] + [(i, SIDE) for i in range(SIDE)]
+        around = ([(-1, i) for i in range(SIDE)] + [(SIDE, i) for i in range(SIDE)]
+                  + [(i, -1) for i in range(SIDE)] + [(i, SIDE) for i in range(SIDE)])
         draw.shuffle(around)
         kinds = [{"Container": "Pot"}.get(name, name) for name in thor.OBJECTS + thor.RECEPTACLES]
         self.places = dict(zip(kinds, around))
@@ -64,14 +67,16 @@ class Controller:
         return self.event(result)
 
     def event(self, result=None):
-        objects = [{"objectId": kind + "|0", "objectType": kind, "position": {"x": 0.25 * x, "y": 1, "z": 0.25 * z}, "visible": self.visible(kind)}
+        objects = [{"objectId": kind + "|0", "objectType": kind, "position": {"x": 0.25 * x, "y": 1, "z": 0.25 * z},
+                    "visible": self.visible(kind)}
                    for kind, (x, z) in self.places.items()]
         frame = numpy.zeros((2, 6, 3), "u1")
         numbers = [self.heading // 90, self.horizon // 30 + 1, len(self.open)] + [int(o["visible"]) for o in objects]
         frame.flat[:len(numbers)] = numbers
         metadata = {"lastActionSuccess": True, "errorMessage": "", "actionReturn": result, "objects": objects,
                     "agent": {"position": {"x": self.agent[0], "y": 0.9, "z": self.agent[1]}}}
-        return types.SimpleNamespace(metadata=metadata, frame=frame, instance_detections2D={o["objectId"]: None for o in objects if o["visible"]})
+        return types.SimpleNamespace(metadata=metadata, frame=frame,
+                                     instance_detections2D={o["objectId"]: None for o in objects if o["visible"]})
 
 
 class Extract:

@@ -15,7 +15,8 @@ setup() {
     [ "$(described b.ckpt '.seen | length')" -eq 7 ]
     [ "$(described b.ckpt '.options["task-loss"]')" = "$(described a.ckpt '.options["task-loss"]')" ]
     synpo-eval -q -p new.tsv -n 1 <b.ckpt >m
-    [ "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { n += $at["seen"] } END { print n }' m)" -eq 2 ]
+    [ "$(awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } { n += $at["seen"] } END { print n }' m)" \
+        -eq 2 ]
     for name in theta encoder.fc.weight alpha.hidden.weight encoder.stage1.block1.norm1.mean; do
         cmp <(tensor a.ckpt $name) <(tensor b.ckpt $name)
     done
@@ -67,7 +68,8 @@ setup() {
 }
 
 @test "ppo: resumed equals unbroken, 1 and 2 threads; the log has a row a report" {
-    synpo-finetune ppo "${PPO[@]}" --steps 128 -j 2 --log log.tsv --report 1 --evaluate-every 2 --evaluate-episodes 2 <a.ckpt >unbroken
+    synpo-finetune ppo "${PPO[@]}" --steps 128 -j 2 --log log.tsv --report 1 --evaluate-every 2 --evaluate-episodes 2 \
+        <a.ckpt >unbroken
     [ "$(wc -l <log.tsv)" -eq 5 ]
     synpo-render curves -o curve.png <log.tsv
     synpo-finetune ppo "${PPO[@]}" --steps 64 -j 1 <a.ckpt >part

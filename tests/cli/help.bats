@@ -1,9 +1,12 @@
 load common
 
 # The commands that have a --help of their own.
-COMMANDS=(synpo-gen-expert synpo-train synpo-finetune "synpo-finetune adapt" "synpo-finetune ppo" synpo-eval synpo-matrix synpo-render "synpo-matrix split" "synpo-matrix summary"
-    "synpo-matrix table" "synpo-matrix compare" "synpo-matrix rows" "synpo-matrix cols" "synpo-matrix show" "synpo-matrix filter"
-    "synpo-matrix wide" "synpo-matrix merge" "synpo-render heatmap" "synpo-render curves" "synpo-render map" "synpo-render view"
+COMMANDS=(synpo-gen-expert synpo-train synpo-finetune "synpo-finetune adapt" "synpo-finetune ppo" synpo-eval
+    synpo-matrix synpo-render "synpo-matrix split" "synpo-matrix summary"
+    "synpo-matrix table" "synpo-matrix compare" "synpo-matrix rows" "synpo-matrix cols" "synpo-matrix show"
+    "synpo-matrix filter"
+    "synpo-matrix wide" "synpo-matrix merge" "synpo-render heatmap" "synpo-render curves" "synpo-render map"
+    "synpo-render view"
     "synpo-render episode" "synpo-render embedding" "synpo-render policy" "synpo-render features")
 
 # Options in a --help text, one a line: -n and --count alike.

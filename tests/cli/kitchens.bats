@@ -11,7 +11,8 @@ setup_file() {
 setup() { set_up k.jsonl grid.jsonl; }
 
 @test "map: all kitchens, those named, in columns" {
-    all_differ "map -w kitchen" "" "FloorPlan1" "FloorPlan25 FloorPlan1" "FloorPlan1 FloorPlan25" "--columns 1" "--title Kitchens" "--scale 1"
+    all_differ "map -w kitchen" "" "FloorPlan1" "FloorPlan25 FloorPlan1" "FloorPlan1 FloorPlan25" "--columns 1" \
+        "--title Kitchens" "--scale 1"
 }
 
 @test "map --ansi: the plans as text" {
@@ -24,13 +25,15 @@ setup() { set_up k.jsonl grid.jsonl; }
 }
 
 @test "view: kitchens, tasks, seeds, steps, histories" {
-    all_differ "view -w kitchen" "" "-e FloorPlan25" "-t Mug-Sink" "-s 1" "--episode 1" "--steps 2" "--history" "--steps 2 --history" "--title View" "--scale 1"
+    all_differ "view -w kitchen" "" "-e FloorPlan25" "-t Mug-Sink" "-s 1" "--episode 1" "--steps 2" "--history" \
+        "--steps 2 --history" "--title View" "--scale 1"
     synpo-render view -w kitchen -e FloorPlan1 -t Container-Fridge -s 0 --steps 0 >b.png
     synpo-render view -w kitchen | cmp - b.png
 }
 
 @test "episode: the picture, its line, strip and title" {
-    all_differ "episode -w kitchen" "k.jsonl" "--line 2 k.jsonl" "--strip 0 k.jsonl" "--strip 4 k.jsonl" "--title Another k.jsonl" "--scale 1 k.jsonl"
+    all_differ "episode -w kitchen" "k.jsonl" "--line 2 k.jsonl" "--strip 0 k.jsonl" "--strip 4 k.jsonl" \
+        "--title Another k.jsonl" "--scale 1 k.jsonl"
     synpo-render episode -w kitchen k.jsonl >a.png
     synpo-render episode -w kitchen <k.jsonl | cmp - a.png
 }

@@ -6,7 +6,8 @@ map() {
     awk 'BEGIN {
         for (r = 0; r < 16; ++r) {
             line = ""
-            for (c = 0; c < 16; ++c) line = line (r == 0 || r == 15 || c == 0 || c == 15 || (c == 7 && r > 3) ? "#" : " ")
+            for (c = 0; c < 16; ++c) 
+                line = line (r == 0 || r == 15 || c == 0 || c == 15 || (c == 7 && r > 3) ? "#" : " ")
             print line
         }
     }' >"$1"

@@ -29,7 +29,8 @@ QUESTIONS=(summary table rows cols show filter wide merge "compare hand.tsv")
         [ -s out ]
     done
     synpo-matrix wide hand.tsv >wide.tsv
-    printf 'task\tenv1\tenv2\tenv3\ntask1\t0.6\t0.92\t0.93\ntask2\t0.91\t0.6\t0.93\ntask3\t0.91\t0.92\t0.6\n' | cmp - wide.tsv
+    printf 'task\tenv1\tenv2\tenv3\ntask1\t0.6\t0.92\t0.93\ntask2\t0.91\t0.6\t0.93\ntask3\t0.91\t0.92\t0.6\n' |
+        cmp - wide.tsv
     synpo-matrix show hand.tsv >shown
     cat >expected <<'END'
 100 episodes a pair
@@ -45,7 +46,8 @@ END
 }
 
 @test "table: text, TSV, Markdown, LaTeX say the same of three seeds" {
-    for seed in 1 2 3; do by_hand | awk -v s=$seed 'BEGIN { FS = OFS = "\t" } NR > 1 { $5 -= s } { print }' | with seed=$seed; done >all
+    for seed in 1 2 3; do by_hand | awk -v s=$seed 'BEGIN { FS = OFS = "\t" } NR > 1 { $5 -= s } { print }' |
+        with seed=$seed; done >all
     awk 'NR == 1 || !/^env\t/' all >runs.tsv
     # Means 91, 90, 89 of seen pairs and 59, 58, 57 of unseen ones: sd 1.
     synpo-matrix table runs.tsv >text
@@ -61,7 +63,8 @@ END
         function near(x, y) { return x - y < 1e-5 && y - x < 1e-5 }
         NR == 2 { ok += $at["subset"] == "seen" && near($at["mean"], 0.9) && $at["interval"] == "student" &&
             near($at["low"], 0.875159) && near($at["high"], 0.924841) }
-        NR == 3 { ok += $at["subset"] == "unseen" && near($at["mean"], 0.58) && near($at["sd"], 0.01) && $at["interval"] == "wilson" &&
+        NR == 3 { ok += $at["subset"] == "unseen" && near($at["mean"], 0.58) && near($at["sd"], 0.01) &&
+        $at["interval"] == "wilson" &&
             near($at["low"], 0.547482) && near($at["high"], 0.611838) }
         END { exit !(ok == 2 && NR == 3) }' tsv
     synpo-matrix table -f tsv --pair-by-pair -s 7 --samples 500 runs.tsv >drawn
@@ -73,7 +76,8 @@ END
 }
 
 @test "no 100.0 +- 0.0, no 1.00: runs without a failure are alike, and have an interval" {
-    for seed in 1 2 3; do by_hand | awk 'BEGIN { FS = OFS = "\t" } NR > 1 { $5 = 100 } { print }' | with seed=$seed; done |
+    for seed in 1 2 3; do by_hand | awk 'BEGIN { FS = OFS = "\t" } NR > 1 { $5 = 100 } { print }' |
+        with seed=$seed; done |
         awk 'NR == 1 || !/^env\t/' >runs.tsv
     synpo-matrix table runs.tsv >text
     grep -q '100.0 (3 alike)  *99.8 to 100.0 w  *100.0' text
@@ -113,7 +117,8 @@ END
 }
 
 @test "new pairs are a class of their own; other environments of the same name are noticed" {
-    by_hand | awk 'BEGIN { FS = OFS = "\t" } { $6 = NR == 1 ? "new" : $1 == "env3" && $3 == 0 ? 1 : 0 } { print }' >m.tsv
+    by_hand | awk 'BEGIN { FS = OFS = "\t" } { $6 = NR == 1 ? "new" : $1 == "env3" && $3 == 0 ? 1 : 0 }
+        { print }' >m.tsv
     synpo-matrix summary m.tsv >out
     grep -q '^unseen  *2  *120 of 200 ' out
     grep -q '^new  *1  *60 of 100 ' out

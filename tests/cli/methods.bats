@@ -1,7 +1,8 @@
 load common
 
 # Each with what it is called on the command line.
-METHODS=("synpo" "synpo --action-embedding 3" "mtl" "mlp" "modulenet" "sf --sf-loss td" "sf --sf-loss q" "sf --sf-loss ce")
+METHODS=("synpo" "synpo --action-embedding 3" "mtl" "mlp" "modulenet" "sf --sf-loss td" "sf --sf-loss q"
+    "sf --sf-loss ce")
 SMALL=(--feature 16 --basis 12 --embedding 10 --hidden 24)
 
 setup_file() { make_inputs; }
@@ -28,12 +29,14 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
         synpo-eval -q -p two.tsv -n 3 -j 1 <m.ckpt >one
         synpo-eval -q -p two.tsv -n 3 -j 2 <m.ckpt >two
         cmp one two
-        awk -F '\t' -v method="${method%% *}" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next } $at["method"] != method { exit 1 }' one
+        awk -F '\t' -v method="${method%% *}" 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+            $at["method"] != method { exit 1 }' one
     done
 }
 
 @test "a method that learns values takes the best action unless told otherwise" {
-    temperature() { awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "temperature") at = i } END { print $at }' "$1"; }
+    temperature() { awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "temperature") at = i }
+        END { print $at }' "$1"; }
     for case in "sf --sf-loss td:0" "sf --sf-loss q:0" "sf:0.5" "mlp:0.5"; do
         # shellcheck disable=SC2086
         synpo-train "${TINY[@]}" "${SMALL[@]}" -m ${case%:*} -n 1 --strip <e.jsonl >m.ckpt
@@ -46,7 +49,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
 
 @test "the log has NA for a loss that a method lacks" {
     synpo-train "${TINY[@]}" "${SMALL[@]}" -m modulenet -n 1 --log log.tsv --report 1 <e.jsonl >/dev/null
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i } NR == 2 { print $at["reward"], $at["env"], $at["task"], $at["loss"] == $at["policy"] }' log.tsv >got
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i }
+        NR == 2 { print $at["reward"], $at["env"], $at["task"], $at["loss"] == $at["policy"] }' log.tsv >got
     echo "NA NA NA 1" | cmp - got
 }
 

@@ -7,7 +7,8 @@ commands() {
     local tool
     for tool in $TOOLS; do
         case $tool in
-            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help | awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
+            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help |
+                awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
             *) echo "$tool" ;;
         esac
     done
@@ -16,7 +17,8 @@ commands() {
 # Lines "SHORT LONG ARGUMENT" of a --help text: - where there is no letter, or no argument. An option that is on or off
 # stands there with its first name.
 options_of() {
-    "$@" --help | sed -nE 's/^ {2}(-[A-Za-z0-9]|   ),? +?--([a-z0-9-]+)(, --no-[a-z0-9-]+)?( ([^ ]+))?( .*)?$/\1|--\2|\5/p' |
+    "$@" --help | sed -nE \
+        's/^ {2}(-[A-Za-z0-9]|   ),? +?--([a-z0-9-]+)(, --no-[a-z0-9-]+)?( ([^ ]+))?( .*)?$/\1|--\2|\5/p' |
         awk -F '|' '{ gsub(/ /, "", $1); print ($1 == "" ? "-" : $1), $2, ($3 == "" ? "-" : $3) }'
 }
 

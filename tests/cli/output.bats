@@ -125,8 +125,10 @@ for_writers() {
 }
 
 @test "binary output to a terminal is refused with 64, and before the work; -f forces it" {
-    for command in "synpo-train -q -n 3 <two.tsv" "synpo-render map" "synpo-render heatmap m.tsv" "synpo-render curves run.log" \
-        "synpo-render view" "synpo-render episode e.jsonl" "synpo-render embedding a.ckpt" "synpo-render policy a.ckpt"; do
+    for command in "synpo-train -q -n 3 <two.tsv" "synpo-render map" "synpo-render heatmap m.tsv" \
+        "synpo-render curves run.log" \
+        "synpo-render view" "synpo-render episode e.jsonl" "synpo-render embedding a.ckpt" \
+        "synpo-render policy a.ckpt"; do
         run -64 on_terminal "$command"
         says "standard output is a terminal and the output is binary: use -o FILE, or -f to force it"
     done
@@ -135,8 +137,10 @@ for_writers() {
 }
 
 @test "where a stream is expected a terminal is refused with 64" {
-    for command in "synpo-train -n 1 >x" "synpo-eval >x" "synpo-gen-expert --relabel" "synpo-matrix summary" "synpo-matrix merge" \
-        "synpo-render heatmap >x" "synpo-render curves >x" "synpo-render episode >x" "synpo-render embedding >x" "synpo-render policy >x"; do
+    for command in "synpo-train -n 1 >x" "synpo-eval >x" "synpo-gen-expert --relabel" "synpo-matrix summary" \
+        "synpo-matrix merge" \
+        "synpo-render heatmap >x" "synpo-render curves >x" "synpo-render episode >x" "synpo-render embedding >x" \
+        "synpo-render policy >x"; do
         status=0
         timeout 20 script -qec "$command" /dev/null </dev/null >"$BATS_TEST_TMPDIR/err" || status=$?
         [ "$status" -eq 64 ] || complain "$command: exit code $status: $(cat "$BATS_TEST_TMPDIR/err")"

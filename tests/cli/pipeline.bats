@@ -4,7 +4,8 @@ load render/pictures
 @test "split | gen-expert | train | eval | summary | heatmap, as in the README" {
     synpo-matrix split --envs 3 --tasks 3 -n 5 -s 1 >pairs.tsv
     set -o pipefail
-    synpo-gen-expert -p pairs.tsv -n 30 -s 1 | synpo-train -q -p pairs.tsv -m synpo -s 1 -n 3 --batch-states 64 --fill 30 \
+    synpo-gen-expert -p pairs.tsv -n 30 -s 1 |
+        synpo-train -q -p pairs.tsv -m synpo -s 1 -n 3 --batch-states 64 --fill 30 \
         --expect 30 --log log.tsv --report 1 >synpo.ckpt
     synpo-eval -q -p pairs.tsv -n 2 <synpo.ckpt >synpo.tsv
     synpo-matrix summary synpo.tsv >summary.txt
@@ -12,7 +13,8 @@ load render/pictures
 
     [ "$(described synpo.ckpt .updates)" -eq 3 ]
     [ "$(wc -l <log.tsv)" -eq 4 ]
-    awk -F '\t' 'NR > 1 { pairs += 1; seen += $11; episodes += $12 } END { exit !(pairs == 9 && seen == 5 && episodes == 18) }' synpo.tsv
+    awk -F '\t' 'NR > 1 { pairs += 1; seen += $11; episodes += $12 }
+        END { exit !(pairs == 9 && seen == 5 && episodes == 18) }' synpo.tsv
     grep -q unseen summary.txt
     is_png synpo.png
 }
@@ -20,7 +22,8 @@ load render/pictures
 @test "the matrix has the columns of synpo-matrix(5), and merge and summary read what eval wrote" {
     make_inputs
     head -n 1 m.tsv >got
-    printf '%s\t' run world window method seed updates eval_seed first_episode env task seen episodes successes wrong timeouts reward length |
+    printf '%s\t' run world window method seed updates eval_seed first_episode env task seen episodes successes wrong \
+        timeouts reward length |
         sed 's/$/temperature\tenv_hash\n/' | cmp - got
     synpo-matrix merge m.tsv >merged
     cmp m.tsv merged
@@ -36,10 +39,12 @@ load render/pictures
     awk -F '\t' '
         NR == 1 { columns = NF; for (i = 1; i <= NF; ++i) at[$i] = i; next }
         NF != columns { print "line " NR ": " NF " fields"; exit bad = 1 }
-        { for (i = 1; i <= NF; ++i) if ($i != "NA" && $i !~ /^-?[0-9.]+(e[-+][0-9]+)?$/) { print "found " $i; exit bad = 1 } }
+        { for (i = 1; i <= NF; ++i) if ($i != "NA" && $i !~ /^-?[0-9.]+(e[-+][0-9]+)?$/) { print "found " $i;
+        exit bad = 1 } }
         { updates = updates $at["update"] " "; evaluated = evaluated ($at["seen_success"] == "NA" ? 0 : 1) }
         END { if (!bad && updates evaluated != "2 4 6 011") { print updates evaluated; bad = 1 } exit bad }' log.tsv
-    jq -R -s -e 'split("\n")[0] | split("\t") | index("policy") and index("right_walk_on") and index("states_per_s")' log.tsv
+    jq -R -s -e 'split("\n")[0] | split("\t") | index("policy") and index("right_walk_on") and index("states_per_s")' \
+        log.tsv
 }
 
 @test "pictures: heatmap, map, view are whole PNGs, and the same bytes twice" {

@@ -49,7 +49,8 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     stand_ins
     scripts/reproduce figure3 --budget 1e6 --seeds 2 -n 7 -o results
     trained >got
-    printf '%s\n' full-1 no-env-1 no-task-1 no-disentanglement-1 no-reward-1 full-2 no-env-2 no-task-2 no-disentanglement-2 no-reward-2 | cmp - got
+    printf '%s\n' full-1 no-env-1 no-task-1 no-disentanglement-1 no-reward-1 full-2 no-env-2 no-task-2 \
+        no-disentanglement-2 no-reward-2 | cmp - got
     [ "$(grep -c 'train.* -n 1953 ' calls)" = 10 ]
     grep -q 'train .*-p pairs2.tsv -s 2 .*--no-env-loss --no-task-loss ' calls
     [ "$(grep -c 'eval .* -n 7 ' calls)" = 10 ]
@@ -64,7 +65,8 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     stand_ins
     mkdir results
     echo no-task-1 >results/stop
-    ! scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results 2>err || complain "a training that failed was passed over"
+    ! scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results 2>err ||
+        complain "a training that failed was passed over"
     [ ! -e results/README.md ]
     trained >got
     printf '%s\n' full-1 no-env-1 no-task-1 | cmp - got
@@ -100,7 +102,7 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
     [ "$(grep -- '^- ' results/table4/README.md)" = '- mlp: `--lr 0.5 --task-loss 0.25`' ]
 }
 
-@test "reproduce grid: chosen is the most success on the pairs held back, or the best reward where none is better than guessing" {
+@test "reproduce grid: chosen is most success on pairs held back, or the best reward where none beats guessing" {
     stand_ins
     cat >build/synpo-eval <<'END'
 #!/bin/bash
@@ -120,7 +122,8 @@ END
     cut -f 1-3 results/choice.tsv >got
     printf '%s\t%s\t%s\n' mlp '--lr 0.002 --embedding-sd 0.3 --weight-decay 0.001' 0.0700 \
         modulenet '--lr 0.002 --dropout 0 --weight-decay 0.0001' 0.0300 mtl '--lr 0.001 --embedding-sd 1' 0.0500 \
-        sf '--lr 0.002 --sf-loss td --embedding-sd 0.1 --reward-loss 0.01 --weight-decay 0.001' 0.0000 synpo '--lr 0.001' 0.5000 | cmp - got
+        sf '--lr 0.002 --sf-loss td --embedding-sd 0.1 --reward-loss 0.01 --weight-decay 0.001' 0.0000 synpo \
+        '--lr 0.001' 0.5000 | cmp - got
     [ "$(trained | sort -u | wc -l)" = "$(wc -l <results/runs)" ]
 }
 
@@ -139,7 +142,8 @@ END
 
 @test "reproduce: nonsense is wrong usage, and says what is right" {
     stand_ins
-    for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" "table4 --budget 12" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
+    for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" \
+        "table4 --budget 12" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
         status=0
         # shellcheck disable=SC2086
         scripts/reproduce $words 2>err || status=$?

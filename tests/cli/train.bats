@@ -16,7 +16,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
 
 @test "the seed decides; the log, --save and -o don't" {
     synpo-train "${TINY[@]}" -n 3 -s 7 <e.jsonl >a
-    synpo-train "${TINY[@]}" -n 3 -s 7 -o b --save c --every 2 --log log.tsv --report 1 --evaluate-every 2 --evaluate-episodes 2 <e.jsonl
+    synpo-train "${TINY[@]}" -n 3 -s 7 -o b --save c --every 2 --log log.tsv --report 1 --evaluate-every 2 \
+        --evaluate-episodes 2 <e.jsonl
     synpo-train "${TINY[@]}" -n 3 -s 8 <e.jsonl >d
     cmp a b
     cmp a c
@@ -25,7 +26,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
 
 @test "it learns: the loss falls" {
     synpo-train "${TINY[@]}" -n 40 --warm-up 5 --log log.tsv --report 10 <e.jsonl >/dev/null
-    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "policy") at = i } NR == 2 { first = $at } END { exit !($at < 0.8 * first) }' log.tsv
+    awk -F '\t' 'NR == 1 { for (i = 1; i <= NF; ++i) if ($i == "policy") at = i } NR == 2 { first = $at }
+        END { exit !($at < 0.8 * first) }' log.tsv
 }
 
 @test "resumed equals unbroken, both recipes, whatever the stop" {

@@ -56,8 +56,10 @@ def advantage_results(rng, steps=9, lanes=3):
     end[2, 0] = end[6, 0] = end[steps - 1, 1] = TERMINATED
     end[4, 1] = TRUNCATED
     draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
-    given = dict(reward=draw(steps, lanes), value=draw(steps, lanes), end=end, cut_value=draw(steps, lanes), last_value=draw(lanes))
-    tensors = {name: torch.from_numpy(array if name == "end" else array.astype(np.float64)) for name, array in given.items()}
+    given = dict(reward=draw(steps, lanes), value=draw(steps, lanes), end=end, cut_value=draw(steps, lanes),
+                 last_value=draw(lanes))
+    tensors = {name: torch.from_numpy(array if name == "end" else array.astype(np.float64))
+               for name, array in given.items()}
     return {**given, "advantage": advantages(**tensors).numpy()}
 
 
@@ -70,15 +72,19 @@ def ppo_losses(logits, action, old_log_probability, advantage, value, target):
 
 
 def clipped_results(rng, count=24):
-    """Ratios below, within and above the clip, for advantages of both signs, and off its edges by more than float32 rounds."""
+    """Ratios below, within and above the clip, for advantages of both signs, and off its edges by more than float32
+    rounds."""
     draw = lambda *shape: rng.normal(size=shape).astype(np.float32)
     logits, action = draw(count, ACTIONS), rng.integers(0, ACTIONS, count)
     wanted = np.resize((0.6, 0.87, 0.93, 1.06, 1.13, 1.7), count) * rng.uniform(0.99, 1.01, count)
     advantage = np.abs(draw(count)) * np.where(np.arange(count) // 6 % 2, 1, -1).astype(np.float32)
-    log_probability = F.log_softmax(torch.from_numpy(logits).double(), 1)[torch.arange(count), torch.from_numpy(action)].numpy()
-    given = dict(logits=logits, action=action, old_log_probability=(log_probability - np.log(wanted)).astype(np.float32),
+    log_probability = F.log_softmax(torch.from_numpy(logits).double(), 1)[torch.arange(count),
+                                                                          torch.from_numpy(action)].numpy()
+    given = dict(logits=logits, action=action,
+                 old_log_probability=(log_probability - np.log(wanted)).astype(np.float32),
                  advantage=advantage, predicted=draw(count), target=draw(count))
-    tensors = {name: torch.from_numpy(array.astype(np.float64) if array.dtype == np.float32 else array) for name, array in given.items()}
+    tensors = {name: torch.from_numpy(array.astype(np.float64) if array.dtype == np.float32 else array)
+               for name, array in given.items()}
     leaves = [tensors[name].requires_grad_() for name in ("logits", "predicted")]
     policy, value, entropy, ratio = ppo_losses(*tensors.values())
     (policy + value - ENTROPY_WEIGHT * entropy).backward()
@@ -109,15 +115,16 @@ def dump(args):
     rng = np.random.default_rng(args.seed)
     parts = dict(gae=advantage_results(rng), clip=clipped_results(rng), rmsprop=rmsprop_results(rng))
     tensors = {f"{part}.{name}": array for part, results in parts.items() for name, array in results.items()}
-    metadata = dict(discount=GAMMA, **{"lambda": LAMBDA}, clip=CLIP, entropy=ENTROPY_WEIGHT, gradient_norm=GRADIENT_NORM, **LONG_STEPS)
+    metadata = dict(discount=GAMMA, **{"lambda": LAMBDA}, clip=CLIP, entropy=ENTROPY_WEIGHT,
+                    gradient_norm=GRADIENT_NORM, **LONG_STEPS)
     reference.write_safetensors(args.output, tensors, {key: str(value) for key, value in metadata.items()})
 
 
 # --- bench ---------------------------------------------------------------------------------------
 
 class Learner:
-    """PPO on SynPo. Worlds stepped in Python would be slow through no fault of PyTorch: what the lanes see and how they are rewarded is drawn
-    beforehand, and costs nothing here."""
+    """PPO on SynPo. Worlds stepped in Python would be slow through no fault of PyTorch: what the lanes see and how they
+    are rewarded is drawn beforehand, and costs nothing here."""
 
     def __init__(self, net, worlds, memory_format, head, foreach, rollout=ROLLOUT, minibatches=MINIBATCHES):
         layout = torch.channels_last if memory_format == "channels_last" else torch.contiguous_format
@@ -144,7 +151,8 @@ class Learner:
         chosen = []
         for picture, row in zip(of_step(self.worlds["input"]), of_step(index)):
             psi = encoder(picture)
-            distribution = torch.distributions.Categorical(logits=self.head(self.net, psi, None, alpha, row) + self.net.policy["bias"])
+            distribution = torch.distributions.Categorical(logits=self.head(self.net, psi, None, alpha, row)
+                                                           + self.net.policy["bias"])
             action = distribution.sample()
             chosen.append((action, distribution.log_prob(action), self.values(psi, pairs[row])))
         action, log_probability, value = (torch.stack(part) for part in zip(*chosen))
@@ -163,7 +171,8 @@ class Learner:
         self.optimiser.zero_grad(set_to_none=True)
         losses, logits, psi = self.net.losses(batch, self.head)
         value = self.values(psi, self.net.embedded(batch))
-        policy, error, entropy, _ = ppo_losses(logits, batch["taken"], batch["log_probability"], batch["advantage"], value, batch["target"])
+        policy, error, entropy, _ = ppo_losses(logits, batch["taken"], batch["log_probability"], batch["advantage"],
+                                               value, batch["target"])
         auxiliary = sum(weight * losses[name] for name, weight in AUXILIARY.items())
         (policy + error - ENTROPY_WEIGHT * entropy + auxiliary).backward()
         nn.utils.clip_grad_norm_(self.parameters, GRADIENT_NORM)
@@ -190,7 +199,8 @@ def bench(args):
     reference.randomise(net, torch.Generator().manual_seed(0))
     worlds = random_worlds(ROLLOUT * LANES, net.w, np.random.default_rng(0))
     # A quarter of an update, with minibatches of the same size.
-    trial = lambda **choice: min(reference.step_times(Learner(copy.deepcopy(net), worlds, **choice, rollout=ROLLOUT // 4, minibatches=1).update, 0.5))
+    trial = lambda **choice: min(reference.step_times(Learner(copy.deepcopy(net), worlds, **choice,
+                                                              rollout=ROLLOUT // 4, minibatches=1).update, 0.5))
     choice = reference.fastest(dict(reference.OPTIONS["pictures"], foreach=(True, False)), trial)
     reference.report(ROLLOUT * LANES, reference.step_times(Learner(net, worlds, **choice).update, args.seconds), choice)
 

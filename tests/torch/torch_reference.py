@@ -48,18 +48,21 @@ ACTIONS = dict(pictures=5, features=7)
 STRIDES = (2, 2, 2, 1)
 HISTORY, HAND = 4, 16  # views, and numbers about the hand after them
 # Widths by sight: of pictures (GridWorld), of features (the kitchens).
-NARROW_HEAD = dict(feature=16, basis=12, embedding=10, hidden=24, action_embedding=0, head_hidden=20, seam=6, envs=4, tasks=5)
+NARROW_HEAD = dict(feature=16, basis=12, embedding=10, hidden=24, action_embedding=0, head_hidden=20, seam=6, envs=4,
+                   tasks=5)
 NARROW = dict(pictures=dict(channels=(8, 16, 24, 32), **NARROW_HEAD),
               features=dict(view=20, view_channels=18, objects=4, object_embedding=3, view_hidden=21, **NARROW_HEAD))
 FULL_HEAD = dict(basis=128, embedding=128, hidden=512, action_embedding=0, head_hidden=1024, seam=32)
 FULL = dict(pictures=dict(channels=(32, 64, 128, 256), feature=128, envs=20, tasks=20, **FULL_HEAD),
-            features=dict(view=2048, view_channels=1024, objects=8, object_embedding=32, view_hidden=2048, feature=256, envs=19, tasks=21,
+            features=dict(view=2048, view_channels=1024, objects=8, object_embedding=32, view_hidden=2048, feature=256,
+                          envs=19, tasks=21,
                           **FULL_HEAD))
 SMALL = "--channels 4,4,4,5 "
 FEATURES = "--sight features "
 COMMITTED = dict(narrow="", general=SMALL + "--action-embedding 3", mtl=SMALL + "--method mtl",
                  mtl_general=SMALL + "--method mtl --action-embedding 7", mlp=SMALL + "--method mlp",
-                 modulenet=SMALL + "--method modulenet", sf_td=SMALL + "--method sf", sf_q=SMALL + "--method sf --sf-loss q",
+                 modulenet=SMALL + "--method modulenet", sf_td=SMALL + "--method sf",
+                 sf_q=SMALL + "--method sf --sf-loss q",
                  sf_ce=SMALL + "--method sf --sf-loss ce", temporal=FEATURES, temporal_mlp=FEATURES + "--method mlp")
 REWARD_WEIGHT = 0.01
 DISCOUNT = 0.9
@@ -111,7 +114,8 @@ class Encoder(nn.Module):
 
 
 class TemporalEncoder(nn.Module):
-    """psi(s) of Table 3: [N, HISTORY * view + HAND] -> [N, d]. The views stand oldest first; after them the number of what the hand holds."""
+    """psi(s) of Table 3: [N, HISTORY * view + HAND] -> [N, d]. The views stand oldest first; after them the number of
+    what the hand holds."""
 
     def __init__(self, w):
         super().__init__()
@@ -131,7 +135,8 @@ class TemporalEncoder(nn.Module):
 
 
 class UnrolledEncoder(TemporalEncoder):
-    """The same with matrices in place of convolutions, and nothing multiplied with the padding. bench keeps the faster one."""
+    """The same with matrices in place of convolutions, and nothing multiplied with the padding. bench keeps the faster
+    one."""
 
     def __init__(self, w, encoder):
         super().__init__(w)
@@ -209,11 +214,13 @@ class SynPo(Policy):
             self.add_module("f_" + name, Mlp(w.basis, w.hidden, w.embedding))
 
     def summed(self):
-        return [(self.alpha, self.w.basis), (self.beta, self.w.basis)] + [(getattr(self, "f_" + n), self.w.embedding) for n in self.embedding]
+        return [(self.alpha, self.w.basis), (self.beta, self.w.basis)] + [(getattr(self, "f_" + n), self.w.embedding)
+                                                                          for n in self.embedding]
 
     def pairs(self, batch):
         """Distinct pairs (for MTL tasks) as one row of embeddings each [P, E], and each state's row [N]."""
-        pairs, index = torch.unique(torch.stack([batch[name] for name in self.embedding], 1), dim=0, return_inverse=True)
+        pairs, index = torch.unique(torch.stack([batch[name] for name in self.embedding], 1), dim=0,
+                                    return_inverse=True)
         return self.embedded(dict(zip(self.embedding, pairs.t()))), index
 
     def matrices(self):
@@ -341,7 +348,8 @@ class SuccessorFeatures(Policy):
         phi = self.phi(feature).view(len(feature), self.w.actions, -1)[torch.arange(len(feature)), batch["taken"]]
         psi = self.features(feature, batch)
         q = self.values(psi, batch)
-        policy_loss = {"td": lambda: self.temporal_difference(phi, psi, batch), "q": lambda: F.mse_loss(q, batch["planner_q"]),
+        policy_loss = {"td": lambda: self.temporal_difference(phi, psi, batch),
+                       "q": lambda: F.mse_loss(q, batch["planner_q"]),
                        "ce": lambda: F.cross_entropy(q, batch["label"])}[self.w.sf_loss]()
         reward = (phi * self.embedding["task"][batch["task"]]).sum(1)
         return dict(policy=policy_loss, reward=F.mse_loss(reward, batch["reward"])), q, feature
@@ -508,7 +516,8 @@ def step_results(net, batch, weights):
     losses, logits, psi = net.losses(batch)
     loss = total(losses, weights)
     loss.backward()
-    result = {"loss": np.array([loss.item()] + [losses[name].item() if name in losses else math.nan for name in weights]),
+    result = {"loss": np.array([loss.item()]
+                               + [losses[name].item() if name in losses else math.nan for name in weights]),
               "logits": to_file("", logits), "psi": to_file("", psi)}
     for name, p in net.named_parameters():
         p.grad = torch.zeros_like(p) if p.grad is None else p.grad  # a module without samples
@@ -529,7 +538,8 @@ def step_results(net, batch, weights):
 
 
 def dump(args):
-    sizes = {key: value if getattr(args, key) is None else getattr(args, key) for key, value in (FULL if args.full else NARROW)[args.sight].items()}
+    sizes = {key: value if getattr(args, key) is None else getattr(args, key)
+             for key, value in (FULL if args.full else NARROW)[args.sight].items()}
     shape = widths(sizes, args.sight, sf_loss=args.sf_loss)
     batch_size = args.batch or (4 if args.full else 6)
     weights = dict(policy=1, reward=REWARD_WEIGHT, env=args.weight_env, task=args.weight_task)
@@ -586,7 +596,8 @@ def check(args):
 # --- bench ---------------------------------------------------------------------------------------
 
 def blas():
-    """The BLAS that PyTorch runs on, or None: Debian's fallback, the reference one, multiplies at a fiftieth of OpenBLAS's rate."""
+    """The BLAS that PyTorch runs on, or None: Debian's fallback, the reference one, multiplies at a fiftieth of
+    OpenBLAS's rate."""
     with open("/proc/self/maps") as maps:
         libraries = {line.split()[-1] for line in maps if "/" in line}
     for library in libraries:
@@ -659,8 +670,8 @@ def prepare(threads):
 
 
 def fastest(options, seconds):
-    """Of each option, given with its values, the one with which seconds(**choice) is least: one after the other, as they hardly
-    depend on each other."""
+    """Of each option, given with its values, the one with which seconds(**choice) is least: one after the other, as
+    they hardly depend on each other."""
     choice = {key: values[0] for key, values in options.items()}
     best = seconds(**choice)
     for key, values in options.items():
@@ -675,13 +686,15 @@ def fastest(options, seconds):
 
 
 def report(states, times, choice):
-    print("torch", torch.__version__, blas(), *(f"{key}={value}" for key, value in choice.items()), f"best={states / min(times):.0f}", file=sys.stderr)
+    print("torch", torch.__version__, blas(), *(f"{key}={value}" for key, value in choice.items()),
+          f"best={states / min(times):.0f}", file=sys.stderr)
     print(f"{states / statistics.median(times):.0f}")
 
 
 # The fastest way may depend on these.
 HEADS = dict(head=("by_sum", "by_bmm", "by_matrix"))
-OPTIONS = dict(pictures=dict(memory_format=("channels_last", "contiguous"), **HEADS), features=dict(unrolled=(False, True), **HEADS))
+OPTIONS = dict(pictures=dict(memory_format=("channels_last", "contiguous"), **HEADS),
+               features=dict(unrolled=(False, True), **HEADS))
 
 
 def bench(args):
@@ -691,7 +704,8 @@ def bench(args):
     randomise(net, torch.Generator().manual_seed(0))
     batches = [to_torch(random_batch(args.batch, net.w, rng, pairs=144), torch.float32) for _ in range(2)]
     options = dict(OPTIONS[args.sight], foreach=(True, False) if args.mode == "train" else (None,))
-    choice = fastest(options, lambda **choice: min(step_times(make_step(args.mode, copy.deepcopy(net), batches, **choice), 0.5)))
+    choice = fastest(options, lambda **choice: min(step_times(make_step(args.mode, copy.deepcopy(net), batches,
+                                                                        **choice), 0.5)))
     report(args.batch, step_times(make_step(args.mode, net, batches, **choice), args.seconds), choice)
 
 

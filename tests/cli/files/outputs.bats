@@ -14,7 +14,8 @@ refused_before() {
 }
 
 @test "standard error is closed: no progress in the checkpoint" {
-    loud=(-p pairs.tsv -n 3 --batch-states 16 --running 16 --fill 5 -j 1 --report 1 --evaluate-every 3 --evaluate-episodes 2)
+    loud=(-p pairs.tsv -n 3 --batch-states 16 --running 16 --fill 5 -j 1 --report 1 --evaluate-every 3
+        --evaluate-episodes 2)
     synpo-train "${loud[@]}" -o open <e.jsonl
     synpo-train "${loud[@]}" -o closed <e.jsonl 2>&-
     cmp open closed
@@ -147,7 +148,8 @@ refused_before() {
     cp "$(command -v synpo-train)" "$open/synpo-train"
     chmod 755 "$open/synpo-train"
     status=0
-    (cd "$open" && setpriv --reuid 12345 --regid 12345 --clear-groups ./synpo-train -q -n 3 -o out <two.tsv) 2>err || status=$?
+    (cd "$open" && setpriv --reuid 12345 --regid 12345 --clear-groups ./synpo-train -q -n 3 -o out <two.tsv) 2>err ||
+        status=$?
     grep -qx old "$open/out"
     rm -r "$open"
     [ "$status" -eq 73 ] || complain "exit code $status: $(cat err)"
@@ -287,9 +289,10 @@ refused_before() {
     [ "$(ls -A | grep -c part)" -eq 0 ]
 }
 
-@test "the file, its name and its folder are flushed to the disk, in this order; a temporary is not followed nor shared" {
+@test "file, name and folder are flushed to the disk, in this order; a temporary is not followed nor shared" {
     command -v strace >/dev/null || skip "needs strace"
-    strace -f -y -e trace=open,openat,fsync,rename,renameat,renameat2 -o trace synpo-matrix split -o out 2>/dev/null || skip "strace cannot trace here"
+    strace -f -y -e trace=open,openat,fsync,rename,renameat,renameat2 -o trace synpo-matrix split -o out 2>/dev/null ||
+        skip "strace cannot trace here"
     grep -Eq 'openat\(.*"\./out\.[a-z2-7]{12}\.part", O_RDWR\|O_CREAT\|O_EXCL\|O_NOFOLLOW\|O_CLOEXEC, 0666\)' trace
     grep -E 'fsync|rename' trace | sed 's/.*\(fsync\|rename\)[a-z0-9]*(\(.*\)) *= 0/\1 \2/' >order
     [ "$(cut -d ' ' -f 1 order | tr '\n' ' ')" = "fsync rename fsync " ]

@@ -42,7 +42,7 @@ stops() {
     [ -z "$(find . -name '*.part')" ]
 }
 
-@test "signals are heard while a stream is read: before the first update, after the last, over lines that were read before" {
+@test "signals are heard while a stream is read: before the first update, after the last, over lines read before" {
     for signal in "TERM 143" "INT 130" "HUP 129"; do
         # shellcheck disable=SC2086
         stops $signal 5 synpo-train "${TINY[@]}" -n 3
@@ -59,7 +59,8 @@ stops() {
 }
 
 @test "signals are heard where a stream never ends and never waits" {
-    for command in "synpo-finetune adapt -q -n 3 -c a.ckpt" "synpo-train ${TINY[*]} -n 3 --fill 1e7" "synpo-train ${TINY[*]} -n 3 --expect 1000000000 --save saved"; do
+    for command in "synpo-finetune adapt -q -n 3 -c a.ckpt" "synpo-train ${TINY[*]} -n 3 --fill 1e7" \
+        "synpo-train ${TINY[*]} -n 3 --expect 1000000000 --save saved"; do
         # shellcheck disable=SC2086
         env --default-signal=INT $command -o out < <(while cat e.jsonl 2>/dev/null; do :; done) 2>err 3>&- &
         pid=$!
@@ -76,7 +77,8 @@ stops() {
 
 @test "signals are heard while a pipe is opened: to read it, to write it" {
     mkfifo pipe
-    for command in "synpo-train ${TINY[*]} -n 3 -p pipe" "synpo-train ${TINY[*]} -n 3 -o pipe" "synpo-train ${TINY[*]} -n 3 --log pipe" \
+    for command in "synpo-train ${TINY[*]} -n 3 -p pipe" "synpo-train ${TINY[*]} -n 3 -o pipe" \
+        "synpo-train ${TINY[*]} -n 3 --log pipe" \
         "synpo-finetune adapt -q -c pipe" "synpo-gen-expert -n 3 -o pipe"; do
         # shellcheck disable=SC2086
         stops TERM 143 0 $command
@@ -121,7 +123,9 @@ stops_unread() {
     [ ! -e matrix ]
     stops_unread TERM 143 bash -c 'exec synpo-eval -q -j 1 -c a.ckpt -p two.tsv -n 1000 --record - >pipe'
     # The log is lost; what was learned is not.
-    stops_unread TERM 74 bash -c "exec synpo-train ${TINY[*]} -j 1 --batch-states 1 --running 1 -n 100000 --report 1 --log pipe --save saved -o out <e.jsonl"
+    stops_unread TERM 74 bash -c \
+        "exec synpo-train ${TINY[*]} -j 1 --batch-states 1 --running 1 -n 100000 --report 1 --log pipe \
+            --save saved -o out <e.jsonl"
     [ "$(described saved .updates)" -gt 100 ]
     cmp saved out
 }

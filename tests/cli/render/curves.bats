@@ -27,9 +27,11 @@ table() {
     drawn curves -x states -y reward SynPo=run-1.log,run-2.log
     drawn curves -x minutes run-1.log run-2.log --mark 'unseen:82.1=paper' --title 'Two runs'
     [ "$(size_of a.png)" = "1240 540" ]
-    drawn curves -x minutes --rate 100 --panels 1 --band range A=run-1.log A=run-2.log B=run-1.log --size 300x200 --scale 1
+    drawn curves -x minutes --rate 100 --panels 1 --band range A=run-1.log A=run-2.log B=run-1.log --size 300x200 \
+        --scale 1
     [ "$(size_of a.png)" = "300 200" ]
-    for column in loss policy reward_loss env task right_move learning_rate states_per_s; do drawn curves -y $column run-1.log blind.log; done
+    for column in loss policy reward_loss env task right_move learning_rate states_per_s; do drawn curves -y $column \
+        run-1.log blind.log; done
     drawn curves --pairs unseen --x-range :5 --y-range 0:50 run-1.log
 }
 
@@ -50,7 +52,8 @@ table() {
     mkdir other
     cp run-2.log other/run-1.log
     # Two files of one name are two lines, not two runs.
-    synpo-render curves run-1.log other/run-1.log | cmp - <(synpo-render curves run-1.log=run-1.log other/run-1.log=run-2.log)
+    synpo-render curves run-1.log other/run-1.log |
+        cmp - <(synpo-render curves run-1.log=run-1.log other/run-1.log=run-2.log)
 }
 
 @test "the time a log was written at does not show, except against minutes" {

@@ -7,7 +7,8 @@ setup_file() { make_inputs; }
 setup() { set_up e.jsonl a.ckpt; }
 
 @test "embeddings: components and distances, of what was trained or of all" {
-    all_differ embedding "" "--all" "--kind distance" "--kind distance --all" "--kind distance --metric euclidean" "--title Embeddings" "--scale 1"
+    all_differ embedding "" "--all" "--kind distance" "--kind distance --all" "--kind distance --metric euclidean" \
+        "--title Embeddings" "--scale 1"
 }
 
 @test "embeddings: wrong options 64, no checkpoint 65, missing 66" {

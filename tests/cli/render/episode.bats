@@ -89,7 +89,8 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
     synpo-render episode --ansi e.jsonl >text
     [ "$(wc -l <text)" -eq 18 ]
     [ "$(sed -n 2p text)" = "$(printf '#%.0s' {1..64})" ]
-    tail -n 1 text | grep -qE '^success after [0-9]+ steps \(the fewest\), reward 1[01]\.[0-9]+; . at step [0-9]+, . at step [0-9]+$'
+    tail -n 1 text | grep -qE \
+        '^success after [0-9]+ steps \(the fewest\), reward 1[01]\.[0-9]+; . at step [0-9]+, . at step [0-9]+$'
     run ! grep -q $'\033' text
     run -0 on_terminal "env TERM=xterm-256color NO_COLOR= COLORTERM= synpo-render episode --ansi e.jsonl"
     grep -q $'\033\[38;5;[0-9]*;48;5;[0-9]*m' "$BATS_TEST_TMPDIR/err"

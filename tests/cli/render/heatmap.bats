@@ -6,7 +6,8 @@ matrix() {
     awk -v n="$1" -v scale="${2:-7}" 'BEGIN {
         OFS = "\t"
         print "env", "task", "seen", "episodes", "successes"
-        for (e = 1; e <= n; e++) for (t = 1; t <= n; t++) print "env" e, "task" t, (e + t) % 3 == 0, 20, (e * scale + t * 5) % 21
+        for (e = 1; e <= n; e++) for (t = 1; t <= n; t++)
+            print "env" e, "task" t, (e + t) % 3 == 0, 20, (e * scale + t * 5) % 21
     }'
 }
 
@@ -67,7 +68,8 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
     says "one.tsv"
     for seed in 1 2; do
         for method in synpo mlp; do
-            awk -v s=$seed -v m=$method 'BEGIN { FS = OFS = "\t" } NR == 1 { print $0, "seed", "method"; next } { print $0, s, m }' one.tsv
+            awk -v s=$seed -v m=$method 'BEGIN { FS = OFS = "\t" } NR == 1 { print $0, "seed", "method"; next }
+                { print $0, s, m }' one.tsv
         done
     done | awk 'NR == 1 || !/^env\t/' >all.tsv
     fails 65 synpo-render heatmap all.tsv
@@ -161,13 +163,16 @@ d|empty, expected a header line
 END
     { head -n 1 good.tsv | tr -d '\n'; seq -f '%.0f' 1000000 | tr '\n' '\t' | sed 's/^/\t/; s/\t$/\n/'; } >bad.tsv
     refused "line 1: found 1000005 columns, expected at most 1000"
-    awk 'BEGIN { OFS = "\t"; print "env", "task", "episodes", "successes"; for (i = 0; i < 120000; ++i) print "e" i, "t", 1, 1 }' >bad.tsv
+    awk 'BEGIN { OFS = "\t"; print "env", "task", "episodes", "successes";
+        for (i = 0; i < 120000; ++i) print "e" i, "t", 1, 1 }' >bad.tsv
     fails 65 synpo-render heatmap bad.tsv
     says "120000 environments: expected at most 100000"
-    awk 'BEGIN { OFS = "\t"; print "env", "task", "episodes", "successes"; for (i = 0; i < 2001; ++i) print "e" i, "t", 1, 1 }' >bad.tsv
+    awk 'BEGIN { OFS = "\t"; print "env", "task", "episodes", "successes";
+        for (i = 0; i < 2001; ++i) print "e" i, "t", 1, 1 }' >bad.tsv
     fails 65 synpo-render heatmap --order cluster bad.tsv
     says "2001 names cannot be clustered, at most 2000"
-    awk 'BEGIN { OFS = "\t"; print "env", "task", "episodes", "successes", "seed"; for (i = 0; i < 101; ++i) print "e", "t", 1, 1, i }' >bad.tsv
+    awk 'BEGIN { OFS = "\t"; print "env", "task", "episodes", "successes", "seed";
+        for (i = 0; i < 101; ++i) print "e", "t", 1, 1, i }' >bad.tsv
     fails 65 synpo-render heatmap --panels seed bad.tsv
     says "more than 100 panels cannot be drawn"
     fails 66 synpo-render heatmap good.tsv missing.tsv

@@ -7,7 +7,8 @@ setup_file() { make_inputs; }
 setup() { set_up e.jsonl a.ckpt; }
 
 @test "a policy in every cell: stages, treasures, histories" {
-    all_differ policy "" "--stage 1" "--stage 2" "--stage 2 --pictures 1" "-s 1" "--episode 1" "-e map2" "-t B-G" "--title Policy" "--scale 1"
+    all_differ policy "" "--stage 1" "--stage 2" "--stage 2 --pictures 1" "-s 1" "--episode 1" "-e map2" "-t B-G" \
+        "--title Policy" "--scale 1"
     drawn policy
     cp a.png default.png
     drawn policy -e map1 -t R-B -s 0 --episode 0 --stage 0 --pictures 0
