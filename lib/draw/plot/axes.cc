@@ -20,7 +20,7 @@ int Axes::pixels(double pt) const { return std::max(1, int(std::lround(pt * scal
 
 Ticks Axes::x_ticks(int width) const {
   for (int most = 12;; --most) {
-    const Ticks ticks = x_.ticks(most);
+    Ticks ticks = x_.ticks(most);
     if (most == 2) return ticks;
     int labels = 0;
     for (const double at : ticks.at) labels = std::max(labels, font_.width(x_.label(at, ticks), pixels(kLabelPt)));
