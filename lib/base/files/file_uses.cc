@@ -50,7 +50,7 @@ OutputUse::OutputUse(const std::string& path, const FileIdentity& file, const st
   for (const auto& output : uses->outputs_)
     if (clashes(*output))
       fail(Exit::kUsage, "cannot write ", shown(path), ": another output goes there, to ", shown(output->path));
-  use_ = std::make_shared<const FileUses::Use>(path, file);
+  use_ = std::make_shared<const FileUses::Use>(FileUses::Use{path, file});
   uses->outputs_.push_back(use_);
 }
 

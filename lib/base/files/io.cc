@@ -102,6 +102,8 @@ void Input::bad_line(const Error& error) const { throw error.at(concat(name_, ":
 
 // Where the bytes go: stdout, or a device or a pipe that was opened, or a file under way.
 struct Output::Place {
+  explicit Place(OutputUse given) : use(std::move(given)) {}
+
   OutputUse use;
   Descriptor opened = {};
   std::unique_ptr<UnfinishedFile> file = {};

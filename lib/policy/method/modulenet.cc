@@ -72,8 +72,8 @@ Losses ModuleNet<T>::head_step(const HeadStep<T>& step) {
   T* dseam = dseam_.grow(seams);
   T* keep = keep_.grow(seams);
   T* dlogits = dlogits_.grow(size_t(n) * shape().actions);
-  task_.groups.sort(n, shape().tasks, [&](int i) { return batch.task[i]; });
-  env_.groups.sort(n, shape().envs, [&](int i) { return batch.env[i]; });
+  task_.groups.sort(n, shape().tasks, [&](int i) { return step.batch.task[i]; });
+  env_.groups.sort(n, shape().envs, [&](int i) { return step.batch.env[i]; });
 
   task_.forward(parallel, psi, parameters, seam);
   Random random(batch.seed, Purpose::kDropout, 0, batch.update);

@@ -88,7 +88,11 @@ void SynPo<T>::compose_backward(Parallel& parallel, const T* parameters, T* grad
 // Policy and reward losses: logits, dpsi_ and dcomposed_.
 template <class T>
 Losses SynPo<T>::heads(const HeadStep<T>& step) {
-  const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
+  Parallel& parallel = step.parallel;
+  const StepBatch<T>& batch = step.batch;
+  const StepOptions& options = step.options;
+  const T *parameters = step.parameters, *psi = step.psi;
+  T *logits = step.logits, *dpsi = step.dpsi, *gradient = step.gradient;
   const int n = batch.size, d = shape().feature, actions = shape().actions, columns = form_.columns(),
             pairs = int(pairs_.size());
   const size_t matrix = form_.matrix_size();
@@ -149,8 +153,11 @@ Losses SynPo<T>::heads(const HeadStep<T>& step) {
 // The disentanglement losses. Samples are taken in the order of their labels, so that x is one product an action.
 template <class T>
 void SynPo<T>::disentangle(const HeadStep<T>& step, Losses& losses) {
-  const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
-  const LossWeights& weights = options.weights;
+  Parallel& parallel = step.parallel;
+  const StepBatch<T>& batch = step.batch;
+  const T *parameters = step.parameters, *psi = step.psi;
+  T *dpsi = step.dpsi, *gradient = step.gradient;
+  const LossWeights& weights = step.options.weights;
   const int n = batch.size, d = shape().feature, basis = shape().basis;
   const std::vector<int>& order = by_label_.members;
   T* sorted = psi_sorted_.grow(size_t(n) * d);

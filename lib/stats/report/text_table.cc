@@ -118,7 +118,7 @@ std::string range_text(const Interval& interval, double mean, const MeasureKind&
 std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind, int digits) {
   digits = std::max(digits, kind.digits);
   const double mean = over_runs.mean * kind.scale(), sd = over_runs.sd * kind.scale();
-  const std::string one = kind.rate ? percent(over_runs.mean, digits) : decimal(mean, digits);
+  std::string one = kind.rate ? percent(over_runs.mean, digits) : decimal(mean, digits);
   if (std::isnan(sd)) return one;
   if (alike(over_runs)) return concat(one, " (", over_runs.count, " alike)");
   std::string shown_mean, shown_sd;
