@@ -30,6 +30,9 @@ std::string number(double value) {
 }  // namespace
 
 struct TsvLog::File {
+  File(const std::string& where, const std::string& columns, const Destination& destination)
+      : path(where), header(columns), use(where, destination.identity()) {}
+
   std::string path, header;
   OutputUse use;
   Descriptor opened = {};
@@ -113,7 +116,7 @@ TsvLog::TsvLog(const std::string& path, bool append, const std::vector<std::stri
   std::string header;
   for (const std::string& column : columns) header += (header.empty() ? "" : "\t") + column;
   const Destination destination = Destination::find(path);
-  file_.reset(new File{path, header, OutputUse(path, destination.identity())});
+  file_ = std::make_unique<File>(path, header, destination);
   file_->open_place(destination);
   if (append && !file_->in_place) file_->look(columns.size());
 }
@@ -131,7 +134,7 @@ void TsvLog::write(const std::vector<double>& values) {
 bool TsvLog::failed() const { return file_ && file_->failure; }
 
 void TsvLog::check() const {
-  if (failed()) throw *file_->failure;
+  if (failed()) throw Error(*file_->failure);
 }
 
 const std::vector<std::string>& run_log_columns() {
