@@ -14,7 +14,7 @@ OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-LIB_SRC  := $(shell find lib -name '*.cc')
+LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*')
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
 # The machine that the compiler is for; this one while no compiler is installed (make deps all).
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
@@ -33,6 +33,24 @@ PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu
             libgtest-dev bats jq man-db python3-numpy
 
 BENCH_PACKAGES := python3-torch libopenblas0-openmp
+
+# The plug-in of LibTorch, for --device: against Debian's LibTorch, or the one in the folder TORCH. That of PyTorch is
+#   python3 -c 'import torch, os; print(os.path.dirname(torch.__file__))'
+TORCH       :=
+TORCH_DIR   := $(or $(TORCH),/usr)
+TORCH_LIB   := $(or $(TORCH:%=%/lib),/usr/lib/$(shell $(CXX) -dumpmachine 2>/dev/null))
+TORCH_CUDA  := $(wildcard $(TORCH_LIB)/libtorch_cuda.so)
+CUDA_HOME   ?= /usr/local/cuda
+TORCH_STD   ?= c++17
+TORCH_SRC   := $(wildcard lib/torch/*.cc)
+TORCH_OBJ   := $(TORCH_SRC:%.cc=$(B)/%.o)
+TORCH_CFLAGS = -std=$(TORCH_STD) -Wall -Wextra -O1 -fPIC -fvisibility=hidden -MMD -MP -Ilib \
+               $(if $(TORCH),-isystem $(TORCH)/include) -isystem $(TORCH_DIR)/include/torch/csrc/api/include \
+               $(if $(TORCH_CUDA),-DSYNPO_TORCH_CUDA -isystem $(CUDA_HOME)/include) \
+               $(if $(shell grep -c __cxx11 $(TORCH_LIB)/libc10.so 2>/dev/null | grep -v '^0'),,-D_GLIBCXX_USE_CXX11_ABI=0)
+TORCH_LIBS   = -L$(TORCH_LIB) $(if $(TORCH),-Wl$(,)-rpath$(,)$(TORCH_LIB)) -Wl,--no-as-needed -ltorch -ltorch_cpu -lc10 \
+               $(if $(TORCH_CUDA),-ltorch_cuda -lc10_cuda)
+, := ,
 
 # ccache compiles nothing twice, and does without precompiled headers.
 ifeq ($(findstring ccache,$(CXX)),)
@@ -54,14 +72,19 @@ MAKEFLAGS += -j$(shell nproc)
 ifneq ($(filter deps,$(MAKECMDGOALS)),)
 $(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ) $(B)/tests/bench/synpo-bench.o $(STD): | deps
 endif
+ifneq ($(filter deps-torch,$(MAKECMDGOALS)),)
+$(TORCH_OBJ): | deps-torch
+endif
 ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
 bench check-torch: | deps-bench
 endif
 
-.PHONY: all lib check lint bench demo gallery deps deps-bench install clean check-torch
+.PHONY: all lib torch check lint bench demo gallery deps deps-bench deps-torch install clean check-torch
 all: $(TOOLS:%=$(B)/%)
 	@echo "The programs are in $(B)/: $(TOOLS)"
 lib: $(B)/libsynpo.a
+torch: $(B)/libsynpo_torch.so
+	@echo "The plug-in of LibTorch is $<: --device torch-cpu$(if $(TORCH_CUDA), or cuda) uses it"
 
 $(B)/libsynpo.a: $(LIB_OBJ)
 	$(call say,AR,$@)
@@ -74,6 +97,19 @@ $(B)/$(1): $(patsubst %.cc,$(B)/%.o,tools/$(1).cc $(wildcard tools/$(1:synpo-%=%
 	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(OPENCV_LIBS))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
+
+# The folder that the plug-in was built against counts as one of its sources.
+$(B)/lib/torch/from: FORCE
+	@mkdir -p $(@D)
+	@echo '$(TORCH_LIB)' | cmp -s - $@ || echo '$(TORCH_LIB)' > $@
+.PHONY: FORCE
+$(TORCH_OBJ): $(B)/%.o: %.cc $(B)/lib/torch/from
+	@mkdir -p $(@D)
+	$(call say,CXX,$<)
+	$(Q)$(CXX) $(TORCH_CFLAGS) -c -o $@ $<
+$(B)/libsynpo_torch.so: $(TORCH_OBJ)
+	$(call say,LINK,$@)
+	$(Q)$(CXX) -shared -o $@ $^ $(TORCH_LIBS)
 
 $(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a
 	$(call say,LINK,$@)
@@ -146,6 +182,9 @@ deps:
 # PyTorch, for bench and check-torch. Debian's PyTorch takes any BLAS; with the reference one it crawls.
 deps-bench:
 	scripts/deps $(BENCH_PACKAGES)
+
+deps-torch:
+	scripts/deps libtorch-dev libopenblas0-openmp
 
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5 $(DESTDIR)$(PREFIX)/share/man/man7

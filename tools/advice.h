@@ -16,6 +16,7 @@ constexpr Advice kSeeWorld = {kOtherWorld, "{} (other maps? see -w)"};
 constexpr Advice kNameFolder = {kNoSource, "{}: name their folder with -w kitchen:DIR"};
 constexpr Advice kNameOtherFolder = {kOtherSource, "{}, expected -w kitchen:DIR"};
 constexpr Advice kLeaveWorld = {kNeedsNoSource, "{}: -w is for those that lie in files of their own"};
+constexpr Advice kBuildPlugin = {kNoPlugin, "{}: make torch builds it (synpo(7))"};
 constexpr Advice kSmallerRate = {kNotFinite, "{}: try a smaller --lr"};
 
 inline std::string words(const TestedStart& start) {

@@ -76,6 +76,7 @@ int body(int argc, char** argv) {
   MatrixPlan plan;
   plan.temperature = kTemperature;  // unless the method has another
   int threads = 0;
+  DeviceOptions device;
   bool describe = false, quiet = false;
   Options options("synpo-eval", "[-p PAIRS] [-n EPISODES] [OPTION]... < CHECKPOINT > MATRIX",
                   "Runs the policy of a checkpoint on every pair and counts successes.");
@@ -88,8 +89,9 @@ int body(int argc, char** argv) {
       .seed(plan.seed, "seed of the start states, which are the same for every checkpoint")
       .real(0, "temperature", "T", "actions are drawn from the policy, its scores divided by T; 0: always the best one",
             plan.temperature, 0, 1000)
-      .threads(threads)
-      .text(0, "record", "FILE",
+      .threads(threads);
+  device.add_to(options);
+  options.text(0, "record", "FILE",
             "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix",
             record_path)
       .choice(0, "starts", "USE", "start states: evaluation, or training for records to learn from, without a matrix",
@@ -118,6 +120,7 @@ int body(int argc, char** argv) {
   Results results(output_path, options.given("output"), record_path, !for_training);
   catch_stop_signals();
   Parallel parallel(threads);
+  compute_on(device, parallel, model);
   Progress progress("synpo-eval", "episodes", plan.pairs.size() * size_t(plan.count), quiet);
   const std::string run = hex(checkpoint.weights_hash());
   const Matrix matrix = success_matrix(parallel, *world, model, run, plan, results.sink(), [&](size_t done) {
@@ -133,5 +136,5 @@ int body(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  return run_tool("synpo-eval", argc, argv, body, {kNameFolder, kNameOtherFolder, kLeaveWorld});
+  return run_tool("synpo-eval", argc, argv, body, {kNameFolder, kNameOtherFolder, kLeaveWorld, kBuildPlugin});
 }

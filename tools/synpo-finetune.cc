@@ -19,12 +19,12 @@ int body(int argc, char** argv) {
         {kSeeWorld,
          kNameFolder,
          kNameOtherFolder,
-         kSmallerRate,
+         kSmallerRate, kBuildPlugin,
          {kNeedsMore, "{} (sf: synpo-train --sf-loss ce makes policies that can be adapted)"}}},
        {"ppo",
         "reinforcement learning on the seen pairs",
         ppo,
-        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate, {kNoPairs, "{}: give them with -p"}}}},
+        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate, kBuildPlugin, {kNoPairs, "{}: give them with -p"}}}},
       argc, argv);
 }
 

@@ -77,6 +77,7 @@ int main(int argc, char** argv) {
                    kNameOtherFolder,
                    kLeaveWorld,
                    kSmallerRate,
+                   kBuildPlugin,
                    {kNoTrainingState, "{}: --init takes its weights"},
                    {kNoLimit, "{}: give -n or --time"}});
 }

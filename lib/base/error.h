@@ -7,7 +7,16 @@
 
 namespace synpo {
 
-enum class Exit { kOk = 0, kUsage = 64, kData = 65, kNoInput = 66, kInternal = 70, kCantCreate = 73, kIo = 74 };
+enum class Exit {
+  kOk = 0,
+  kUsage = 64,
+  kData = 65,
+  kNoInput = 66,
+  kUnavailable = 69,
+  kInternal = 70,
+  kCantCreate = 73,
+  kIo = 74
+};
 
 // Names what went wrong, for failures against which the user of a tool can do something that the library cannot name:
 // options are the tool's. A constant beside the function that fails with it; the tool's Advice (cli/options.h) adds the

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/random.h"
 #include "base/take_rows.h"
+#include "engine/cpu_engine.h"
 #include "learn/finite.h"
 #include "nn/init.h"
 #include "nn/layout.h"
@@ -15,8 +16,6 @@
 
 namespace synpo {
 namespace {
-
-constexpr int kUnit = Policy<float>::kInferenceUnit;
 
 const TensorInfo& table(const Policy<float>& policy, PairSide side) {
   const TensorInfo* tensor = policy.embeddings(side);
@@ -40,6 +39,7 @@ Model widen(const Model& model, const World& from, const World& world, double em
   wide.updates = model.updates;
   wide.states = model.states;
   wide.policy = make_policy(wide.method, wide.shape);
+  wide.engine = std::make_unique<CpuEngine>(*wide.policy);
   std::vector<int> place(from.envs());  // of an old environment in the new world
   for (int env = 0; env < from.envs(); ++env) {
     const Environment& old = from.environments()[env];
@@ -146,13 +146,14 @@ void Adaptation::compute_features() {
   const int d = model_.shape.feature, steps = int(env_.size()), done = int(psi_.size()) / d;
   if (done == steps) return;
   psi_.resize(size_t(steps) * d);
-  model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), {{0, 0}});
-  parallel_.run(shard_count(steps - done, kUnit), [&](int shard, int thread) {
-    const Range range = shard_range(steps - done, kUnit, shard);
+  model_.engine->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), {{0, 0}});
+  const int unit = model_.engine->inference_unit();
+  parallel_.run(shard_count(steps - done, unit), [&](int shard, int thread) {
+    const Range range = shard_range(steps - done, unit, shard);
     const size_t at = size_t(done) + range.begin;
     const std::vector<int> pair(range.size(), 0);
     std::vector<float> logits(size_t(range.size()) * world_.actions());
-    model_.policy->infer(thread, range.size(), observations_.data() + at * world_.observation_size(), pair.data(),
+    model_.engine->infer(thread, range.size(), observations_.data() + at * world_.observation_size(), pair.data(),
                          logits.data(), psi_.data() + at * d);
   });
 }
@@ -194,7 +195,7 @@ Losses Adaptation::through_head(const std::vector<size_t>& drawn) {
                                   .taken = taken.data(),
                                   .reward = reward.data(),
                                   .psi = psi.data()};
-  return model_.policy->step(parallel_, batch, {options_.losses}, model_.parameters.data(), model_.statistics.data(),
+  return model_.engine->step(parallel_, batch, {options_.losses}, model_.parameters.data(), model_.statistics.data(),
                              gradient_.data(), logits_.data());
 }
 

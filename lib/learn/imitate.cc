@@ -8,7 +8,6 @@
 #include "base/error.h"
 #include "format/safetensors.h"
 #include "learn/finite.h"
-#include "nn/adam.h"
 #include "nn/layout.h"
 #include "nn/loss.h"
 #include "play/episode.h"
@@ -52,7 +51,6 @@ Imitation::Imitation(const World& world, Parallel& parallel, const std::string& 
       model_(start_model(world, method, options, std::move(seen), seed)), memory_(size_t(options.memory)),
       running_(world, options.running_options(0, 0), seed), seen_grows_(model_.seen.empty()) {
   const size_t count = model_.parameters.size();
-  gradient_.grow(count);
   first_moment_.grow(count);
   second_moment_.grow(count);
   first_moment_.zero();
@@ -117,6 +115,18 @@ void Imitation::read(TrajectoryStream& stream) {
   if (model_.window < 0) model_.window = stream.window();
 }
 
+void Imitation::compute_on(const DeviceOptions& device) {
+  synpo::compute_on(device, parallel_, model_);
+  engine_has_all_ = false;
+}
+
+void Imitation::give_to_engine() {
+  const bool averaged = options_.averaging > 0;
+  model_.engine->take({model_.parameters.data(), model_.statistics.data(), first_moment_.data(), second_moment_.data(),
+                       averaged ? average_.data() : nullptr, averaged ? average_statistics_.data() : nullptr});
+  engine_has_all_ = true;
+}
+
 bool Imitation::learn() {
   if (memory_.size() == 0) return false;
   const bool single_steps = options_.batch_states > 0;
@@ -141,20 +151,13 @@ bool Imitation::learn() {
                                   .update = uint64_t(model_.updates),
                                   .next = batch_.next.data(),
                                   .planner_q = batch_.planner_q.data()};
-  const Losses losses = model_.policy->step(parallel_, steps, options_.step(), model_.parameters.data(),
-                                            model_.statistics.data(), gradient_.data(), logits_.data());
-  check_finite(losses.total, model_.updates + 1);
-  AdamOptions adam = options_.adam();
-  adam.learning_rate = options_.rate(model_.updates, total_updates_);
-  const bool averaged = options_.averaging > 0;
   // The first updates' weights are far from where the average should be.
-  const double keep = std::min(options_.averaging, (1.0 + model_.updates) / (10.0 + model_.updates));
-  adam_step(parallel_, adam, model_.updates + 1, model_.policy->parameters().total(), gradient_.data(),
-            model_.parameters.data(), first_moment_.data(), second_moment_.data(), averaged ? average_.data() : nullptr,
-            keep);
-  if (averaged)
-    for (size_t i = 0; i < model_.policy->statistics().total(); ++i)
-      average_statistics_[i] = float(keep * average_statistics_[i] + (1 - keep) * model_.statistics[i]);
+  AdamUpdate adam = {options_.adam(), model_.updates + 1,
+                     std::min(options_.averaging, (1.0 + model_.updates) / (10.0 + model_.updates))};
+  adam.options.learning_rate = options_.rate(model_.updates, total_updates_);
+  if (!engine_has_all_) give_to_engine();
+  const Losses losses = model_.engine->update(parallel_, steps, options_.step(), adam, logits_.data());
+  check_finite(losses.total, model_.updates + 1);
 
   greedy_.resize(n);
   for (int i = 0; i < n; ++i) {
@@ -199,11 +202,13 @@ RunLogRow Imitation::take_report() {
 }
 
 RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
+  model_.engine->give_back();
   return synpo::evaluate_sample(parallel_, world_, model_, best_parameters().data(), best_statistics().data(),
                                 episodes);
 }
 
 Checkpoint Imitation::checkpoint(bool with_training_state) const {
+  model_.engine->give_back();
   Checkpoint c = describe_model(model_, world_);
   c.options = describe_options(options_);
   const Layout& parameters = model_.policy->parameters();

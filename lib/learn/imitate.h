@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "engine/device.h"
 #include "format/checkpoint.h"
 #include "format/run_log.h"
 #include "learn/memory.h"
@@ -33,6 +34,8 @@ class Imitation {
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint);
   // Takes the weights of another model, whose shape must be this one's (kData).
   void take_weights(const Model& other);
+  // Where it is computed, before the first update: on the CPU where nothing is said.
+  void compute_on(const DeviceOptions& device);
 
   // One update: reads, then draws and learns.
   bool update(TrajectoryStream& stream) {
@@ -68,6 +71,8 @@ class Imitation {
 
  private:
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved);
+  // Hands the arrays over to the engine.
+  void give_to_engine();
   // What is evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const {
@@ -80,9 +85,10 @@ class Imitation {
   Model model_;
   ReplayMemory memory_;
   RunningDraw running_;
-  Buffer<float> gradient_, first_moment_, second_moment_, average_, average_statistics_, logits_;
+  Buffer<float> first_moment_, second_moment_, average_, average_statistics_, logits_;
   Minibatch batch_;
   std::vector<int> greedy_;
+  bool engine_has_all_ = false;  // parameters, statistics and moments
   int64_t total_updates_ = 0;
   uint64_t stream_lines_ = 0, stream_hash_ = Hash().value();
   bool seen_grows_;  // no seen pairs were given: those that the stream brings are

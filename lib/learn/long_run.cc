@@ -28,9 +28,9 @@ void check_save(const std::string& path, const Paths& over) {
 }  // namespace
 
 void LongRun::add_to(Options& options) {
-  options.seed(seed)
-      .threads(threads)
-      .text('o', "output", "FILE", "write the checkpoint to FILE", output)
+  options.seed(seed).threads(threads);
+  device.add_to(options);
+  options.text('o', "output", "FILE", "write the checkpoint to FILE", output)
       .text(0, "save", "FILE", "write a checkpoint to FILE now and then, and when a signal stops the run", save)
       .integer(0, "every", "N", "updates between two of them", every, 1, INT64_MAX)
       .text(0, "log", "FILE", "run log, TSV; a resumed run continues it", log)

@@ -8,6 +8,7 @@
 #include "base/cli/progress.h"
 #include "base/files/io.h"
 #include "format/checkpoint.h"
+#include "engine/device.h"
 #include "format/run_log.h"
 
 namespace synpo {
@@ -21,6 +22,7 @@ struct LongRun {
   int threads = 0, evaluate_episodes = 100;
   int64_t every, report, evaluate_every = 0;
   bool strip = false, force = false, quiet = false;
+  DeviceOptions device;
 
   // Defaults of --every and --report.
   LongRun(int64_t every, int64_t report) : every(every), report(report) {}

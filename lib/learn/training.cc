@@ -59,6 +59,7 @@ Training::Training(const TrainingSettings& settings, Parallel& parallel) : setti
     if (settings.limit_s == 0 && run_->total_updates() == kUnknown)
       fail(Exit::kUsage, kNoLimit, "the run was stopped before its limit in time was told in updates");
   }
+  run_->compute_on(settings.device);
   first_ = run_->updates();
   to_time_ = settings.limit_s > 0 ? updates_to_time(run_->options()) : 0;
 }

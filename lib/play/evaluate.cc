@@ -36,13 +36,13 @@ EpisodePlan listed(std::vector<EvalEpisode> episodes) {
   return {count, [list = std::move(episodes)](int64_t position) { return list[size_t(position)]; }};
 }
 
-std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
+std::vector<Outcomes> evaluate(Parallel& parallel, Engine& engine, const World& world,
                                const std::vector<EnvTask>& pairs, const EpisodePlan& plan, const EvalOptions& options,
                                const EpisodeSink& sink, const std::function<void(size_t)>& progress) {
   // Every thread keeps its batch filled from one plan, so that batches are small at its end alone.
   const int64_t total = plan.count;
   const int actions = world.actions(), threads = parallel.threads();
-  const int most = int(std::clamp<int64_t>((total + threads - 1) / threads, 1, Policy<float>::kInferenceUnit));
+  const int most = int(std::clamp<int64_t>((total + threads - 1) / threads, 1, engine.inference_unit()));
   std::mutex mutex;  // of what follows
   int64_t next = 0, done = 0, written = 0;
   std::map<int64_t, Trajectory> waiting;  // for those before them
@@ -96,7 +96,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const 
       batch.observe(running, options.window, observations.data());
       pair_of.clear();
       for (const int place : running) pair_of.push_back(jobs[size_t(place)].episode.pair);
-      policy.infer(thread, int(running.size()), observations.data(), pair_of.data(), logits.data());
+      engine.infer(thread, int(running.size()), observations.data(), pair_of.data(), logits.data());
       const float* scores = logits.data();
       for (int& place : running) {
         RunningEpisode& episode = batch[place];
@@ -128,8 +128,8 @@ Matrix success_matrix(Parallel& parallel, const World& world, Model& model, cons
   const EpisodePlan episodes = {int64_t(pairs.size()) * plan.count, [&](int64_t position) {
                                   return EvalEpisode{int(position / plan.count), plan.first + position % plan.count};
                                 }};
-  model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
-  const std::vector<Outcomes> results = evaluate(parallel, *model.policy, world, pairs, episodes,
+  model.engine->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
+  const std::vector<Outcomes> results = evaluate(parallel, *model.engine, world, pairs, episodes,
                                                  {plan.seed, model.window, plan.temperature, plan.use}, sink, progress);
   Matrix matrix;
   for (size_t p = 0; p < pairs.size(); ++p) {
@@ -180,9 +180,9 @@ RunLogRow::Evaluation evaluate_sample(Parallel& parallel, const World& world, co
     std::vector<EvalEpisode> jobs;
     Random random(model.seed, Purpose::kEvaluationPairs, uint64_t(seen));
     for (int i = 0; i < episodes; ++i) jobs.push_back({int(random.below(uint32_t(pairs.size()))), i});
-    model.policy->prepare_inference(parallel, parameters, statistics, pairs);
+    model.engine->prepare_inference(parallel, parameters, statistics, pairs);
     Outcomes sum;
-    for (const Outcomes& result : evaluate(parallel, *model.policy, world, groups[seen], listed(std::move(jobs)),
+    for (const Outcomes& result : evaluate(parallel, *model.engine, world, groups[seen], listed(std::move(jobs)),
                                            {model.seed, model.window, model.policy->temperature(), kForRunLog}))
       sum.add(result);
     success[seen] = double(sum.successes) / sum.episodes;

@@ -53,7 +53,7 @@ using EpisodeSink = std::function<void(const Trajectory&)>;
 // Runs the episodes with the policy's parameters as prepared by prepare_inference(pairs). Results are per pair, in the
 // order of `pairs`; neither threads nor what else is in the plan changes an episode. Memory does not grow with their
 // number.
-std::vector<Outcomes> evaluate(Parallel& parallel, Policy<float>& policy, const World& world,
+std::vector<Outcomes> evaluate(Parallel& parallel, Engine& engine, const World& world,
                                const std::vector<EnvTask>& pairs, const EpisodePlan& plan, const EvalOptions& options,
                                const EpisodeSink& sink = nullptr,
                                const std::function<void(size_t done)>& progress = nullptr);

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/error.h"
+#include "engine/cpu_engine.h"
 #include "format/pairs.h"
 #include "play/episode.h"
 #include "play/world_factory.h"
@@ -58,6 +59,7 @@ Model loaded_model(const Checkpoint& checkpoint, const World& world) {
   for (const auto& [env, task] : checkpoint.seen) rows.push_back({env, task, true, ""});
   model.seen = resolve_pairs(world, rows, false, "metadata 'seen'");
   model.policy = make_policy(model.method, model.shape);
+  model.engine = std::make_unique<CpuEngine>(*model.policy);
   // Before memory is taken for what a file only claims to hold.
   for (const Layout* layout : {&model.policy->parameters(), &model.policy->statistics()})
     check_tensors(checkpoint.file, "", *layout);
@@ -85,11 +87,16 @@ Model fresh_model(const std::string& method, const PolicyShape& shape, const Ini
   model.shape = shape;
   model.seed = options.seed;
   model.policy = make_policy(method, shape);
+  model.engine = std::make_unique<CpuEngine>(*model.policy);
   model.parameters.grow(model.policy->parameters().total());
   model.statistics.grow(model.policy->statistics().total());
   model.statistics.zero();
   model.policy->initialise(options, model.parameters.data(), model.statistics.data());
   return model;
+}
+
+void compute_on(const DeviceOptions& device, const Parallel& parallel, Model& model) {
+  model.engine = make_engine(device, parallel, model.method, model.shape, *model.policy);
 }
 
 bool lies_in_files(const Checkpoint& checkpoint) {

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "base/error.h"
+#include "engine/device.h"
+#include "engine/engine.h"
 #include "format/checkpoint.h"
 #include "format/safetensors.h"
 #include "nn/buffer.h"
@@ -24,6 +26,7 @@ struct Model {
   uint64_t seed = 0;
   int64_t updates = 0, states = 0;
   std::unique_ptr<Policy<float>> policy;
+  std::unique_ptr<Engine> engine;  // computes with the policy; the CPU's where nothing else is said
   Buffer<float> parameters, statistics;
 
   bool is_seen(EnvTask pair) const;
@@ -32,6 +35,9 @@ struct Model {
 
 // Fresh weights; the window is 1 and no pair is seen.
 Model fresh_model(const std::string& method, const PolicyShape& shape, const InitOptions& options);
+
+// The policy is computed there from now on. Throws as make_engine().
+void compute_on(const DeviceOptions& device, const Parallel& parallel, Model& model);
 
 // Whether some of its environments lie in files of their own.
 bool lies_in_files(const Checkpoint& checkpoint);

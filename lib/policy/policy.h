@@ -96,6 +96,9 @@ class Policy {
 
   virtual size_t observation_size() const = 0;  // bytes of a state
   virtual BatchNeeds needs() const { return {}; }
+  // What values inside the method are multiplied with in a training step, drawn for its batch: [size, n]. Empty for
+  // methods that leave nothing out.
+  virtual std::vector<T> dropout_factors(const StepBatch<T>&, const StepOptions&) const { return {}; }
   // See kTemperature; 0 where scores are values, whose best action is taken.
   virtual double temperature() const { return kTemperature; }
 

@@ -14,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/signals.h"
 #include "base/text.h"
+#include "engine/device.h"
 #include "finetune/finetune.h"
 #include "format/checkpoint.h"
 #include "learn/adapt.h"
@@ -71,6 +72,7 @@ int adapt(int argc, char** argv) {
   int64_t updates = 10000;
   int threads = 0;
   bool force = false, quiet = false;
+  DeviceOptions device;
   Options options(
       "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
       "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
@@ -89,8 +91,9 @@ int adapt(int argc, char** argv) {
       .real(0, "embedding-sd", "X", "new embeddings start as N(0, X^2); 0: Xavier uniform", adaptation.embedding_sd, 0,
             1000)
       .seed(seed)
-      .threads(threads)
-      .text('o', "output", "FILE", "write the checkpoint to FILE", output_path)
+      .threads(threads);
+  device.add_to(options);
+  options.text('o', "output", "FILE", "write the checkpoint to FILE", output_path)
       .flag('f', "force", "write the checkpoint to a terminal", force)
       .quiet(quiet);
   options.parse(argc, argv);
@@ -103,7 +106,9 @@ int adapt(int argc, char** argv) {
   const std::unique_ptr<World> from = world_of(checkpoint, more.get());
   const Model model = load_model(checkpoint, *from);
   const std::unique_ptr<World> world = wider_world(*from, more.get(), world_name);
-  Adaptation adapted(*world, parallel, widen(model, *from, *world, adaptation.embedding_sd, seed), adaptation, seed);
+  Model wide = widen(model, *from, *world, adaptation.embedding_sd, seed);
+  compute_on(device, parallel, wide);
+  Adaptation adapted(*world, parallel, std::move(wide), adaptation, seed);
   Output output(output_path, Output::Kind::kBinary, force);
   Input input("-");
   TrajectoryStream stream(input, *world, {}, model.window);

@@ -142,7 +142,7 @@ void Ppo::measure_statistics(int batches) {
                                     .label = action.data(),
                                     .taken = action.data(),
                                     .reward = reward.data()};
-    model_.policy->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(),
+    model_.engine->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(),
                         logits.data());
   }
   actors_.take_finished();
@@ -151,7 +151,7 @@ void Ppo::measure_statistics(int batches) {
 void Ppo::look(const std::vector<int>& actors, uint8_t* observations, float* logits, float* psi, float* values) {
   const int n = int(actors.size()), d = model_.shape.feature, in = value_inputs(), actions = world_.actions();
   // As many as may be at once: every batch reads all weights. An actor's scores do not depend on who is with it.
-  const int together = std::min(Policy<float>::kInferenceUnit, (n + parallel_.threads() - 1) / parallel_.threads());
+  const int together = std::min(model_.engine->inference_unit(), (n + parallel_.threads() - 1) / parallel_.threads());
   parallel_.run(shard_count(n, together), [&](int shard, int thread) {
     const Range range = shard_range(n, together, shard);
     const std::span<const int> part(actors.data() + range.begin, size_t(range.size()));
@@ -161,7 +161,7 @@ void Ppo::look(const std::vector<int>& actors, uint8_t* observations, float* log
     for (const int actor : part) pair.push_back(actors_.pair_number(actor));
     std::vector<float> x(size_t(range.size()) * in);
     Buffer<float> scratch;
-    model_.policy->infer(thread, range.size(), seen, pair.data(), logits + size_t(range.begin) * actions,
+    model_.engine->infer(thread, range.size(), seen, pair.data(), logits + size_t(range.begin) * actions,
                          psi + size_t(range.begin) * d);
     for (int i = range.begin; i < range.end; ++i) {
       const EnvTask at = actors_.episodes()[actors[i]].pair;
@@ -181,7 +181,7 @@ void Ppo::collect() {
   r.end.assign(size(), StepEnd::kGoesOn);
   std::vector<std::pair<int, int>> pairs;
   for (const EnvTask& pair : actors_.pairs()) pairs.emplace_back(pair.env, pair.task);
-  model_.policy->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), pairs);
+  model_.engine->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), pairs);
   value_->prepare_inference(value_parameters_.data());
 
   const int actions = world_.actions();
@@ -261,7 +261,7 @@ void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
                                   .reward = reward.data(),
                                   .objective = &objective,
                                   .frozen_statistics = true};
-  const Losses losses = model_.policy->step(parallel_, batch, {options_.losses}, model_.parameters.data(),
+  const Losses losses = model_.engine->step(parallel_, batch, {options_.losses}, model_.parameters.data(),
                                             model_.statistics.data(), gradient_.data(), logits.data());
   check_finite(losses.total, updates_ + 1);
   const size_t count = model_.policy->parameters().total(), value_count = value_layout_.total();

@@ -37,6 +37,7 @@ Tuning::Tuning(const TuningSettings& s, const Options& given, Parallel& parallel
   Model model = fresh ? random_model(s, *world_) : load_model(from, *world_);
   if (!s.pairs.empty()) model.seen = read_seen_pairs(*world_, s.pairs);
   if (model.seen.empty()) fail(Exit::kData, kNoPairs, "no pair to learn on");
+  compute_on(s.device, parallel, model);
   run_.emplace(*world_, parallel, std::move(model), ppo, s.seed);
   if (resumes)
     run_->resume(from);

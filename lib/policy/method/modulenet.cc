@@ -64,23 +64,29 @@ void ModuleNet<T>::Modules::backward(Parallel& parallel, const T* dto, T* dfrom,
 }
 
 template <class T>
+std::vector<T> ModuleNet<T>::dropout_factors(const StepBatch<T>& batch, const StepOptions& options) const {
+  std::vector<T> factors(size_t(batch.size) * shape().seam, T(1 / (1 - options.dropout)));
+  if (options.dropout == 0) return factors;
+  Random random(batch.seed, Purpose::kDropout, 0, batch.update);
+  for (T& factor : factors)
+    if (random.uniform() < options.dropout) factor = 0;
+  return factors;
+}
+
+template <class T>
 Losses ModuleNet<T>::head_step(const HeadStep<T>& step) {
   const auto& [parallel, batch, options, parameters, psi, logits, dpsi, gradient] = step;
   const int n = batch.size;
   const size_t seams = size_t(n) * shape().seam;
   T* seam = seam_.grow(seams);
   T* dseam = dseam_.grow(seams);
-  T* keep = keep_.grow(seams);
   T* dlogits = dlogits_.grow(size_t(n) * shape().actions);
   task_.groups.sort(n, shape().tasks, [&](int i) { return step.batch.task[i]; });
   env_.groups.sort(n, shape().envs, [&](int i) { return step.batch.env[i]; });
 
   task_.forward(parallel, psi, parameters, seam);
-  Random random(batch.seed, Purpose::kDropout, 0, batch.update);
-  for (size_t i = 0; i < seams; ++i) {
-    keep[i] = options.dropout > 0 && random.uniform() < options.dropout ? T(0) : T(1 / (1 - options.dropout));
-    seam[i] *= keep[i];
-  }
+  const std::vector<T> keep = dropout_factors(batch, options);
+  for (size_t i = 0; i < seams; ++i) seam[i] *= keep[i];
   env_.forward(parallel, seam, parameters, logits);
   Losses losses;
   losses.reward = losses.env = losses.task = std::nan("");

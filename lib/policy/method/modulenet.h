@@ -25,6 +25,8 @@ class ModuleNet : public EncodedPolicy<T> {
  public:
   explicit ModuleNet(const PolicyShape& shape);
 
+  std::vector<T> dropout_factors(const StepBatch<T>& batch, const StepOptions& options) const override;
+
  protected:
   std::vector<typename Policy<T>::OwnGroup> own_groups() const override;
   void initialise_head(InitStream& stream, double embedding_sd, T* parameters) const override;
@@ -44,7 +46,7 @@ class ModuleNet : public EncodedPolicy<T> {
   };
 
   Modules task_, env_;
-  Buffer<T> seam_, dseam_, keep_, dlogits_;
+  Buffer<T> seam_, dseam_, dlogits_;
   std::vector<std::pair<int, int>> pairs_;  // for inference
 };
 

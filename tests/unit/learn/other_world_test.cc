@@ -77,11 +77,11 @@ TEST(OtherWorld, ItsTasksAreLearned) {
   TrajectoryStream stream(input, corridor(), {}, -1);
   for (int i = 0; i < 60; ++i) ASSERT_TRUE(run.update(stream));
   const Model model = load_model(as_read(run.checkpoint(false)), corridor());
-  model.policy->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), {{0, 0}, {0, 1}});
+  model.engine->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), {{0, 0}, {0, 1}});
   std::vector<EvalEpisode> episodes;
   for (int i = 0; i < 40; ++i) episodes.push_back({i % 2, i});
   for (const Outcomes& result :
-       evaluate(parallel, *model.policy, corridor(), {{0, 0}, {0, 1}}, listed(episodes), {1, model.window, 0}))
+       evaluate(parallel, *model.engine, corridor(), {{0, 0}, {0, 1}}, listed(episodes), {1, model.window, 0}))
     EXPECT_EQ(result.successes, 20);
 }
 

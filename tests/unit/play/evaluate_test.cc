@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/hash.h"
+#include "engine/cpu_engine.h"
 #include "helpers/episodes.h"
 #include "nn/loss.h"
 #include "play/cell_policy.h"
@@ -71,7 +72,8 @@ std::vector<Outcomes> run(FunctionPolicy::Scores scores, const std::vector<EvalE
                           const EvalOptions& options = {}) {
   Parallel parallel(threads);
   FunctionPolicy policy(scores);
-  return evaluate(parallel, policy, builtin_world(), kPairs, listed(episodes), options);
+  CpuEngine engine(policy);
+  return evaluate(parallel, engine, builtin_world(), kPairs, listed(episodes), options);
 }
 
 // One episode played by itself.
@@ -130,7 +132,8 @@ TEST(Evaluate, ActionsAreDrawnWithTheProbabilitiesOfThePolicy) {
     EvalOptions options;
     options.temperature = temperature;
     double steps = 0;
-    evaluate(parallel, policy, builtin_world(), kPairs, listed(episodes_of(0, 40)), options,
+    CpuEngine engine(policy);
+    evaluate(parallel, engine, builtin_world(), kPairs, listed(episodes_of(0, 40)), options,
              [&](const Trajectory& trajectory) {
                for (const uint8_t action : trajectory.actions) ++count[action], ++steps;
              });
@@ -244,7 +247,8 @@ TEST(Evaluate, EpisodesOfOtherUsesStartAndMoveInTheirOwnWay) {
     EvalOptions options;
     options.temperature = 1;
     options.use = use;
-    evaluate(parallel, policy, builtin_world(), kPairs, listed(episodes_of(0, 10)), options, [&](const Trajectory& t) {
+    CpuEngine engine(policy);
+    evaluate(parallel, engine, builtin_world(), kPairs, listed(episodes_of(0, 10)), options, [&](const Trajectory& t) {
       const EnvTask pair = {builtin_world().env_index(t.env), builtin_world().task_index(t.task)};
       EXPECT_EQ(replay(builtin_world(), t).start,
                 episode_start(builtin_world(), pair, options.seed, use.starts, t.episode));
@@ -267,10 +271,11 @@ TEST(Evaluate, RecordsReplayToTheSameEpisodes) {
   for (const int threads : {1, 2}) {
     Parallel parallel(threads);
     FunctionPolicy policy(hashed);
+    CpuEngine engine(policy);
     size_t done = 0;
     Outcomes sum, recorded;
     for (const Outcomes& result : evaluate(
-             parallel, policy, builtin_world(), kPairs, listed(episodes), {3, 1},
+             parallel, engine, builtin_world(), kPairs, listed(episodes), {3, 1},
              [&](const Trajectory& t) {
                const EvalEpisode& episode = episodes[lines[threads - 1].size()];
                lines[threads - 1].push_back(format_trajectory(t));
