@@ -9,12 +9,13 @@ B        := build
 QUICK    := tools lib/draw lib/stats/matrix lib/stats/report tests/unit
 OPTIMISE  = $(if $(filter $(QUICK:%=$(B)/%/%),$@),-O1,-O3)
 ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP \
-               -Ilib -Itools $(INCLUDES) -isystem /usr/include/eigen3 $(OPTIMISE) $(CXXFLAGS)
+               -Ilib -Itools $(INCLUDES) $(if $(KIT),-isystem $(KIT)) -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*')
+# DRAW=no leaves out what needs OpenCV.
+LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' $(if $(filter no,$(DRAW)),-not -path 'lib/draw/*'))
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
 # The machine that the compiler is for; this one while no compiler is installed (make deps all).
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
@@ -79,7 +80,7 @@ ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
 bench check-torch: | deps-bench
 endif
 
-.PHONY: all lib torch check lint bench demo gallery deps deps-bench deps-torch install clean check-torch
+.PHONY: all lib torch check lint bench demo gallery deps deps-bench deps-torch install clean check-torch gpu-kit
 all: $(TOOLS:%=$(B)/%)
 	@echo "The programs are in $(B)/: $(TOOLS)"
 lib: $(B)/libsynpo.a
@@ -114,6 +115,15 @@ $(B)/libsynpo_torch.so: $(TORCH_OBJ)
 $(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a
 	$(call say,LINK,$@)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS)
+
+# The engines' tests alone, with GoogleTest's sources where it is not installed.
+$(B)/engine-tests: $(filter $(B)/tests/unit/engine/%,$(TEST_OBJ)) $(if $(KIT),$(B)/gtest.o) $(B)/libsynpo.a
+	$(call say,LINK,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) $(if $(KIT),,-lgtest -lgtest_main)
+$(B)/gtest.o:
+	$(call say,CXX,$(KIT)/gtest)
+	$(Q)cat $(KIT)/gtest/src/gtest-all.cc $(KIT)/gtest/src/gtest_main.cc | \
+	    $(CXX) -std=c++17 -O1 -I$(KIT) -I$(KIT)/gtest -x c++ -c -o $@ -
 
 $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
 	$(call say,LINK,$@)
@@ -178,6 +188,10 @@ demo: all
 
 deps:
 	scripts/deps $(PACKAGES)
+
+# What scripts/check-gpu needs on a machine that has nothing but a compiler, make and PyTorch.
+gpu-kit:
+	scripts/gpu-kit
 
 # PyTorch, for bench and check-torch. Debian's PyTorch takes any BLAS; with the reference one it crawls.
 deps-bench:

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "base/cli/options.h"
+#include "engine/torch_engine.h"
 #include "base/error.h"
 #include "learn/finite.h"
 #include "play/episode.h"

@@ -1,10 +1,11 @@
 // Rates of the worlds, the formats and the network step, for scripts/bench.
 //   synpo-bench rows                     TSV rows name, value, unit of everything but the step
 //   synpo-bench methods                  the rows of these that compare methods, and those of the head
-//   synpo-bench train|forward B THREADS  states per second of the Table 2 network at batch B
-//   synpo-bench kitchen B THREADS        the training step of the kitchens' network, that of Table 3, on random
-//   features synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from
-//   them
+//   synpo-bench train|forward B[,B...] THREADS [DEVICE [PRECISION]]
+//                                        states per second of the Table 2 network at batch B, a line each
+//   synpo-bench kitchen B THREADS [DEVICE [PRECISION]]
+//                                        the training step of the kitchens' network, that of Table 3, on random features
+//   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
 //
 // world_steps_per_s and kitchen_steps_per_s are steps of the two worlds, with what the agent sees at each, on one core.
 // train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
@@ -16,12 +17,14 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "engine/device.h"
 #include "learn/ppo/ppo.h"
 #include "learn/recipe.h"
 #include "learn/steps.h"
@@ -113,38 +116,46 @@ double rate(int states, double limit_s, Work&& work) {
   return rates[rates.size() / 2];
 }
 
-double network_rate(bool train, int n, int threads, double limit_s = 4, const std::string& method = "synpo",
-                    const char* world = "gridworld") {
+struct NetworkBench {
+  double limit_s = 4;
+  std::string method = "synpo", world = "gridworld";
+  DeviceOptions device = {};
+};
+
+double network_rate(bool train, int n, int threads, const NetworkBench& bench = {}) {
+  const auto& [limit_s, method, world, device] = bench;
   Parallel parallel(threads);
   const std::unique_ptr<World> opened = open_world(world);
   const ImitationOptions options = recipe(kDefaultRecipe, method, opened->observation_spec().sight);
   const PolicyShape shape = options.shape(*opened);
   const std::unique_ptr<Policy<float>> made = make_policy(method, shape);
   Policy<float>& policy = *made;
+  const std::unique_ptr<Engine> engine = make_engine(device, parallel, method, shape, policy);
   const size_t count = policy.parameters().total();
-  Buffer<float> parameters(count), statistics(policy.statistics().total()), gradient(count), m(count), v(count),
+  Buffer<float> parameters(count), statistics(policy.statistics().total()), m(count), v(count),
       logits(size_t(n) * shape.actions);
   policy.initialise({}, parameters.data(), statistics.data());
   m.zero();
   v.zero();
   const RandomBatch data(n, shape, policy.observation_size());
   int64_t step = 0;
-  if (train)
-    return rate(n, limit_s, [&] {
-      policy.step(parallel, data.batch, options.step(), parameters.data(), statistics.data(), gradient.data(),
-                  logits.data());
-      adam_step(parallel, {}, ++step, count, gradient.data(), parameters.data(), m.data(), v.data());
-    });
+  if (train) {
+    engine->take({parameters.data(), statistics.data(), m.data(), v.data()});
+    // A GPU records the second update.
+    for (int i = 0; i < 2; ++i) engine->update(parallel, data.batch, options.step(), {{}, ++step}, logits.data());
+    return rate(n, limit_s,
+                [&] { engine->update(parallel, data.batch, options.step(), {{}, ++step}, logits.data()); });
+  }
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < shape.envs * shape.tasks; ++i) pairs.emplace_back(i / shape.tasks, i % shape.tasks);
   std::vector<int> pair(n);
   for (int i = 0; i < n; ++i) pair[i] = data.env[i] * shape.tasks + data.task[i];
-  policy.prepare_inference(parallel, parameters.data(), statistics.data(), pairs);
-  constexpr int kUnit = Policy<float>::kInferenceUnit;
+  engine->prepare_inference(parallel, parameters.data(), statistics.data(), pairs);
+  const int unit = engine->inference_unit();
   return rate(n, limit_s, [&] {
-    parallel.run(shard_count(n, kUnit), [&](int shard, int thread) {
-      const Range range = shard_range(n, kUnit, shard);
-      policy.infer(thread, range.size(), data.observations.data() + range.begin * policy.observation_size(),
+    parallel.run(shard_count(n, unit), [&](int shard, int thread) {
+      const Range range = shard_range(n, unit, shard);
+      engine->infer(thread, range.size(), data.observations.data() + range.begin * policy.observation_size(),
                    pair.data() + range.begin, logits.data() + size_t(range.begin) * shape.actions);
     });
   });
@@ -158,6 +169,7 @@ double ppo_rate(int threads) {
   model.shape = recipe(kDefaultRecipe).shape(world);
   for (int i = 0; i < 144; ++i) model.seen.push_back({i % 20, (i + 3 * (i / 20)) % 20});
   model.policy = make_policy(model.method, model.shape);
+  compute_on({}, parallel, model);
   model.parameters.grow(model.policy->parameters().total());
   model.statistics.grow(model.policy->statistics().total());
   model.policy->initialise({}, model.parameters.data(), model.statistics.data());
@@ -338,7 +350,7 @@ class Head {
 
 void method_rows(int threads) {
   for (const std::string& method : method_names())
-    row(("train_" + method + "_states_per_s_b512").c_str(), network_rate(true, 512, threads, 2, method), "states/s");
+    row(("train_" + method + "_states_per_s_b512").c_str(), network_rate(true, 512, threads, {.limit_s = 2, .method = method}), "states/s");
   for (const int actions : {5, 100, 1000})
     for (const int action_embedding : {0, 32}) {
       Head head(actions, action_embedding, threads);
@@ -375,12 +387,16 @@ int rows() {
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
-  if (argc == 4 && (what == "train" || what == "forward")) {
-    std::printf("%.0f\n", network_rate(what == "train", std::atoi(argv[2]), std::atoi(argv[3])));
-    return 0;
-  }
-  if (argc == 4 && what == "kitchen") {
-    std::printf("%.0f\n", network_rate(true, std::atoi(argv[2]), std::atoi(argv[3]), 4, "synpo", "kitchen"));
+  if (argc >= 4 && argc <= 6 && (what == "train" || what == "forward" || what == "kitchen")) {
+    NetworkBench bench;
+    if (what == "kitchen") bench.world = "kitchen";
+    if (argc > 4) bench.device.device = argv[4];
+    if (argc > 5) bench.device.precision = argv[5];
+    std::stringstream batches(argv[2]);
+    for (std::string batch; std::getline(batches, batch, ',');) {
+      std::printf("%.0f\n", network_rate(what != "forward", std::atoi(batch.c_str()), std::atoi(argv[3]), bench));
+      std::fflush(stdout);
+    }
     return 0;
   }
   if (argc == 3 && what == "ppo") {
@@ -392,6 +408,6 @@ int main(int argc, char** argv) {
     method_rows(Parallel().threads());
     return 0;
   }
-  std::fputs("usage: synpo-bench rows | methods | train|forward|kitchen BATCH THREADS | ppo THREADS\n", stderr);
+  std::fputs("usage: synpo-bench rows | methods | train|forward|kitchen BATCH THREADS [DEVICE [PRECISION]] | ppo THREADS\n", stderr);
   return 64;
 }

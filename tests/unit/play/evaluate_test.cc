@@ -226,9 +226,10 @@ TEST(Evaluate, APlanBeyondAnyListTakesNoMemoryAndCanBeLeft) {
   for (const int threads : {1, 2}) {
     Parallel parallel(threads);
     FunctionPolicy policy(hashed);
+    CpuEngine engine(policy);
     const EpisodePlan plan = {kCount, [](int64_t position) { return EvalEpisode{0, kCount - position}; }};
     std::vector<int64_t> numbers;
-    EXPECT_THROW(evaluate(parallel, policy, builtin_world(), kPairs, plan, {},
+    EXPECT_THROW(evaluate(parallel, engine, builtin_world(), kPairs, plan, {},
                           [&](const Trajectory& t) {
                             numbers.push_back(t.episode);
                             if (numbers.size() == 100) throw std::runtime_error("enough");
