@@ -14,8 +14,8 @@ OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-# DRAW=no leaves out what needs OpenCV.
-LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' $(if $(filter no,$(DRAW)),-not -path 'lib/draw/*'))
+# DRAW=no leaves out pictures, and with them OpenCV.
+LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' $(if $(filter no,$(DRAW)),-not '(' -path 'lib/draw/*/*' -not -path 'lib/draw/terminal/*' ')'))
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
 # The machine that the compiler is for; this one while no compiler is installed (make deps all).
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))

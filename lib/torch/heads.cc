@@ -31,6 +31,11 @@ class EmbeddedHead : public Head {
   const NetworkSizes& sizes_;
 };
 
+// Of each state's rows [n, rows, width] with its vector [n, width], the same whatever stands beside a state.
+torch::Tensor dots(const torch::Tensor& rows, const torch::Tensor& vectors) {
+  return rows.bmm(vectors.unsqueeze(2)).squeeze(2);
+}
+
 torch::Tensor mean_square(const torch::Tensor& error) { return error.square().sum() / error.size(0); }
 
 // policy/method/synpo.h; MTL is the same without the environment.
@@ -39,13 +44,13 @@ class SynPoHead : public EmbeddedHead {
   SynPoHead(const NetworkSizes& sizes, bool with_env) : EmbeddedHead(sizes), with_env_(with_env) {}
 
   torch::Tensor scores(const Views& w, const torch::Tensor& psi, const Inputs& in) const override {
-    return logits(w, by_basis(w, psi), coefficients(w, "alpha", in));
+    return logits(w, dots(by_basis(w, psi), coefficients(w, "alpha", in)));
   }
 
   Outputs learn(const Views& w, const torch::Tensor& psi, const Inputs& in, double, bool imitates) const override {
     const torch::Tensor parts = by_basis(w, psi);
     Outputs out;
-    out.logits = logits(w, parts, coefficients(w, "alpha", in));
+    out.logits = logits(w, weigh(parts, coefficients(w, "alpha", in)));
     out.losses[kPolicyLoss] = score_loss(out.logits, in, imitates);
     const torch::Tensor taken = indicator(in.taken, sizes_.actions);
     const torch::Tensor reward = (weigh(parts, coefficients(w, "beta", in)) * columns(w, taken)).sum(1) +
@@ -73,8 +78,7 @@ class SynPoHead : public EmbeddedHead {
   static torch::Tensor weigh(const torch::Tensor& parts, const torch::Tensor& coefficients) {
     return (parts * coefficients.unsqueeze(1)).sum(2);
   }
-  torch::Tensor logits(const Views& w, const torch::Tensor& parts, const torch::Tensor& alpha) const {
-    const torch::Tensor q = weigh(parts, alpha);
+  torch::Tensor logits(const Views& w, const torch::Tensor& q) const {
     return (sizes_.action_embedding > 0 ? product(q, w["phi"].t()) : q) + w["policy.bias"];
   }
   // alpha or beta of every state's pair, [n, K]: made once for all pairs where those are fewer.
@@ -170,7 +174,7 @@ class SfHead : public EmbeddedHead {
   using EmbeddedHead::EmbeddedHead;
 
   torch::Tensor scores(const Views& w, const torch::Tensor& psi, const Inputs& in) const override {
-    return values(successor(w, psi, in), take_rows(table(w, "task"), in.task));
+    return dots(successor(w, psi, in), take_rows(table(w, "task"), in.task));
   }
 
   Outputs learn(const Views& w, const torch::Tensor& psi, const Inputs& in, double discount,

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 
 namespace synpo {
 namespace {
@@ -339,6 +340,7 @@ void Learner::prepare_inference(const float* parameters, const float* statistics
 // Always `unit` states, so that the scores of one do not depend on how many are asked for with it.
 void Learner::infer(int unit, int size, const uint8_t* observations, const int* env, const int* task, float* logits,
                     float* psi) {
+  if (size > unit) throw std::invalid_argument("more states than are scored at once");
   std::lock_guard lock(inference_mutex_);
   const auto entered = replay_.enter();
   torch::NoGradGuard no_gradient;
