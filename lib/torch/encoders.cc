@@ -60,12 +60,12 @@ class ResNetPass {
   }
 
   torch::Tensor residual(const torch::Tensor& x, const std::string& name, int64_t stride) const {
-    torch::Tensor y = norm(convolve(x, w_[name + ".conv1.weight"], stride), name + ".norm1").relu();
+    torch::Tensor y = norm(convolve(x, w_[name + ".conv1.weight"], stride), name + ".norm1").relu_();
     y = norm(convolve(y, w_[name + ".conv2.weight"], 1), name + ".norm2");
     const bool own = w_.has(name + ".shortcut.weight");
     const torch::Tensor shortcut =
         own ? norm(convolve(x, w_[name + ".shortcut.weight"], stride), name + ".shortcut_norm") : x;
-    return (y + shortcut).relu();
+    return y.add_(shortcut).relu_();
   }
 
   const NetworkSizes& sizes_;

@@ -10,6 +10,7 @@
 
 #include <map>
 #include <optional>
+#include <thread>
 #else
 #include <stdexcept>
 #endif
@@ -22,6 +23,7 @@ namespace synpo {
 struct Replay::Recorder {
   struct Entry {
     bool seen = false;
+    std::thread::id by;  // cuDNN's and cuBLAS's handles are a thread's own, and none can be made while a graph is recorded
     std::unique_ptr<at::cuda::CUDAGraph> graph;
   };
   c10::cuda::CUDAStream stream;
@@ -34,12 +36,13 @@ struct Replay::Recorder {
 
   void run(const std::string& key, const std::function<void()>& work) {
     Entry& entry = entries[key];
-    if (!entry.seen || !graphs) {
-      entry.seen = true;
-      work();
-      return;
-    }
     if (!entry.graph) {
+      if (!entry.seen || !graphs || entry.by != std::this_thread::get_id()) {
+        if (!entry.seen) entry.by = std::this_thread::get_id();
+        entry.seen = true;
+        work();
+        return;
+      }
       auto graph = std::make_unique<at::cuda::CUDAGraph>();
       if (!pool) pool = at::cuda::graph_pool_handle();
       graph->capture_begin(*pool);

@@ -1,5 +1,5 @@
-// Work on a device, of which a GPU keeps a graph: what has been done once with the same sizes is recorded the second
-// time, and from then on replayed at once instead of being launched kernel by kernel.
+// Work on a device, of which a GPU keeps a graph: what a thread has done once with the same sizes is recorded the
+// second time, and from then on replayed at once instead of being launched kernel by kernel.
 #pragma once
 #include <torch/types.h>
 

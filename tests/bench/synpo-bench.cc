@@ -391,6 +391,7 @@ int main(int argc, char** argv) {
     NetworkBench bench;
     if (what == "kitchen") bench.world = "kitchen";
     if (argc > 4) bench.device.device = argv[4];
+    if (!bench.device.is_cpu()) bench.limit_s = 2;  // steadier than a CPU
     if (argc > 5) bench.device.precision = argv[5];
     std::stringstream batches(argv[2]);
     for (std::string batch; std::getline(batches, batch, ',');) {

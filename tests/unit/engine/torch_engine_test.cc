@@ -264,7 +264,7 @@ TEST_P(TorchEngine, AgreesAfterSomeUpdates) {
   for (int64_t step = 1; step <= 5; ++step) {
     const RandomSteps<float> drawn = draw_steps(want.parameters, step < 4 ? size_ : 9, false, uint64_t(1000 * step));
     AdamUpdate adam;
-    adam.options = {1e-3 * double(step), 0.9, 0.99, 1e-3, 0.01};
+    adam.options = {1e-2 * double(step), 0.9, 0.99, 0.1, 0.01};
     adam.step = step;
     adam.keep = 0.5 + 0.1 * double(step);
     const Losses a = cpu.update(parallel, drawn.batch(uint64_t(step)), kOptions, adam, logits.data());
