@@ -95,7 +95,7 @@ bool steady(const PolicyShape& shape, const std::string& method, const std::vect
 class TorchEngine : public testing::TestWithParam<Case> {
  protected:
   const int size_ = coarse() ? 256 : 12;  // of a batch
-  TorchEngine() : shape(shape_of(GetParam())), net(shape, GetParam().method), parallel(1) {
+  TorchEngine() : shape(shape_of(GetParam())), net(shape, GetParam().method), parallel(0) {
     net.initialise();
     net.shake();
     other_gradient.assign(net.gradient.size(), 7);  // which is overwritten
