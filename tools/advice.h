@@ -3,8 +3,8 @@
 #include <string>
 
 #include "base/cli/options.h"
-#include "engine/torch_engine.h"
 #include "base/error.h"
+#include "engine/torch_engine.h"
 #include "learn/finite.h"
 #include "play/episode.h"
 #include "play/model.h"

@@ -91,7 +91,8 @@ int body(int argc, char** argv) {
             plan.temperature, 0, 1000)
       .threads(threads);
   device.add_to(options);
-  options.text(0, "record", "FILE",
+  options
+      .text(0, "record", "FILE",
             "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix",
             record_path)
       .choice(0, "starts", "USE", "start states: evaluation, or training for records to learn from, without a matrix",

@@ -11,8 +11,8 @@ Losses CpuEngine::update(Parallel& parallel, const StepBatch<float>& batch, cons
     gradient_.grow(count);
     gradient_.zero();  // what lies between tensors stays so
   }
-  const Losses losses = policy_.step(parallel, batch, options, arrays_.parameters, arrays_.statistics,
-                                     gradient_.data(), logits);
+  const Losses losses =
+      policy_.step(parallel, batch, options, arrays_.parameters, arrays_.statistics, gradient_.data(), logits);
   if (!std::isfinite(losses.total)) return losses;
   adam_step(parallel, adam.options, adam.step, count, gradient_.data(), arrays_.parameters, arrays_.first_moment,
             arrays_.second_moment, arrays_.average, adam.keep);

@@ -1,8 +1,8 @@
 // Who computes: the network's losses, gradients and scores, and the updates of its parameters. Learning and evaluation
 // ask an engine; which processor answers is the engine's own matter.
 //
-// CpuEngine (cpu_engine.h) is the policy of lib/policy itself. TorchEngine (torch_engine.h) does the same with LibTorch,
-// on a GPU for instance.
+// CpuEngine (cpu_engine.h) is the policy of lib/policy itself. TorchEngine (torch_engine.h) does the same with
+// LibTorch, on a GPU for instance.
 #pragma once
 #include <cstdint>
 #include <utility>

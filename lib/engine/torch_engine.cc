@@ -101,8 +101,7 @@ double apply_objective(void* context, int n, const float* psi, const float* logi
 
 class TorchEngine : public Engine {
  public:
-  TorchEngine(const TorchSettings& settings, const std::string& method, const PolicyShape& shape,
-              Policy<float>& policy)
+  TorchEngine(const TorchSettings& settings, const std::string& method, const PolicyShape& shape, Policy<float>& policy)
       : api_(plugin()), policy_(policy), unit_(settings.device == "cpu" ? 64 : 512) {
     const Description description(settings, method, shape, policy);
     if (api_.create(&description.config, &engine_) != 0)

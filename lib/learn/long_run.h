@@ -7,8 +7,8 @@
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/files/io.h"
-#include "format/checkpoint.h"
 #include "engine/device.h"
+#include "format/checkpoint.h"
 #include "format/run_log.h"
 
 namespace synpo {

@@ -42,6 +42,9 @@ std::unique_ptr<Imitation> fresh_run(const TrainingSettings& s, const World& wor
 
 }  // namespace
 
+// The first updates on a GPU load its libraries and record what is replayed later: they say nothing about the others.
+constexpr int64_t kSlowOnDevices = 5;
+
 int64_t updates_within(double limit_s, double elapsed_s, double updating_s, int64_t done) {
   const double more = std::max(0.0, limit_s - elapsed_s) / std::max(updating_s, 1e-9) * double(done);
   return done + int64_t(std::min(more, 1e18));
@@ -62,6 +65,7 @@ Training::Training(const TrainingSettings& settings, Parallel& parallel) : setti
   run_->compute_on(settings.device);
   first_ = run_->updates();
   to_time_ = settings.limit_s > 0 ? updates_to_time(run_->options()) : 0;
+  if (!settings.device.is_cpu()) slow_ = std::clamp<int64_t>(to_time_ - 1, 0, kSlowOnDevices);
 }
 
 bool Training::finished() const { return !timing() && run_->updates() >= run_->total_updates(); }
@@ -83,7 +87,7 @@ void Training::begin() {
 
 void Training::update(Progress& progress) {
   run_->read(*stream_);
-  if (run_->updates() == first_) filled_ = now();
+  if (run_->updates() <= first_ + slow_) filled_ = now();
   if (!run_->learn()) fail(Exit::kData, "standard input has no trajectory");
   note_tested_start(progress);
   if (stream_->ended()) check_length();
@@ -93,7 +97,8 @@ void Training::update(Progress& progress) {
 void Training::tell_total(Progress& progress) {
   const int64_t done = run_->updates() - first_;
   const double elapsed_s = seconds_since(start_);
-  const int64_t fit = updates_within(settings_.limit_s, elapsed_s, seconds_since(filled_), done);
+  if (done <= slow_) return;
+  const int64_t fit = slow_ + updates_within(settings_.limit_s, elapsed_s, seconds_since(filled_), done - slow_);
   const bool too_slow = fit < to_time_ && elapsed_s >= settings_.limit_s / 2;
   if (done < to_time_ && !too_slow) return;
   run_->set_total_updates(first_ + std::min(fit, kMostUpdates - first_));

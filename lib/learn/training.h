@@ -82,6 +82,7 @@ class Training : public LongWork {
   // A limit in time becomes a number of updates by the rate of the first `to_time_` ones, or of fewer where so many do
   // not fit into it; 0: there is no such limit, or the number is known.
   int64_t first_ = 0, to_time_ = 0;
+  int64_t slow_ = 0;  // of those, how many say nothing about the rate
   TimePoint start_, filled_;
   bool noted_tested_start_ = false;
 };

@@ -53,8 +53,8 @@ class SynPoHead : public EmbeddedHead {
     out.logits = logits(w, weigh(parts, coefficients(w, "alpha", in)));
     out.losses[kPolicyLoss] = score_loss(out.logits, in, imitates);
     const torch::Tensor taken = indicator(in.taken, sizes_.actions);
-    const torch::Tensor reward = (weigh(parts, coefficients(w, "beta", in)) * columns(w, taken)).sum(1) +
-                                 (taken * w["reward.bias"]).sum(1);
+    const torch::Tensor reward =
+        (weigh(parts, coefficients(w, "beta", in)) * columns(w, taken)).sum(1) + (taken * w["reward.bias"]).sum(1);
     out.losses[kRewardLoss] = mean_square(reward - in.reward);
     // x(s, a) at the expert's action.
     const torch::Tensor x = (parts * columns(w, indicator(in.label, sizes_.actions)).unsqueeze(2)).sum(1);
@@ -213,11 +213,9 @@ class SfHead : public EmbeddedHead {
   // Mean square over the steps whose next one is known. Targets are held fixed.
   torch::Tensor temporal_difference(const torch::Tensor& sigma, const torch::Tensor& phi, const Inputs& in,
                                     double discount) const {
-    const torch::Tensor known = in.next.ne(kUnknown).to(torch::kFloat32),
-                        goes_on = in.next.ge(0).to(torch::kFloat32);
+    const torch::Tensor known = in.next.ne(kUnknown).to(torch::kFloat32), goes_on = in.next.ge(0).to(torch::kFloat32);
     const torch::Tensor after = at_action(sigma.detach(), in.label).index_select(0, in.next.clamp_min(0));
-    const torch::Tensor target =
-        at_action(phi.detach(), in.taken) + after * (goes_on * discount).unsqueeze(1);
+    const torch::Tensor target = at_action(phi.detach(), in.taken) + after * (goes_on * discount).unsqueeze(1);
     const torch::Tensor squares = (at_action(sigma, in.taken) - target).square().sum(1);
     return (squares * known).sum() / (known.sum().clamp_min(1) * sizes_.embedding);
   }

@@ -13,8 +13,8 @@
 namespace synpo {
 namespace {
 
-constexpr int kInts = 5;                // env, task, label, taken, next
-constexpr int kGap = 16;                // values at most between two tensors of a layout
+constexpr int kInts = 5;                              // env, task, label, taken, next
+constexpr int kGap = 16;                              // values at most between two tensors of a layout
 enum Number { kRate, kCorrection, kMove, kNumbers };  // of an update, at the beginning of the floats
 
 NetworkSizes sizes_of(const TorchConfig& c, const torch::Device& device) {
@@ -68,8 +68,8 @@ Learner::Layout::Layout(const TorchLayout& from) {
 }
 
 Learner::Learner(const TorchConfig& config)
-    : device_(config.device), replay_(device_, config.graphs), sizes_(sizes_of(config, device_)), parameters_(config.parameters),
-      statistics_(config.statistics),
+    : device_(config.device), replay_(device_, config.graphs), sizes_(sizes_of(config, device_)),
+      parameters_(config.parameters), statistics_(config.statistics),
       observation_bytes_(config.features ? (int64_t(config.history) * config.view + config.object_floats) * 4
                                          : int64_t(config.side) * config.side * config.history),
       seam_(config.seam), head_(make_head(sizes_)) {
@@ -207,7 +207,8 @@ void Learner::put_results(Exchange& exchange, const Outputs& out) const {
 
 TorchLosses Learner::fetch_results(Exchange& exchange, int64_t n, float* logits) const {
   const int64_t scores = n * sizes_.actions;
-  exchange.host_results.narrow(0, 0, kLossKinds + scores).copy_(exchange.results.narrow(0, 0, kLossKinds + scores), true);
+  exchange.host_results.narrow(0, 0, kLossKinds + scores)
+      .copy_(exchange.results.narrow(0, 0, kLossKinds + scores), true);
   replay_.finish();
   const float* results = exchange.host_results.data_ptr<float>();
   std::copy_n(results + kLossKinds, scores, logits);
@@ -248,13 +249,13 @@ TorchLosses Learner::step(const TorchBatch& batch, const TorchStepOptions& optio
         objective->apply(objective->context, batch.size, host_psi.data(), logits, dlogits.data(), dpsi.data());
     const auto add = [&](const torch::Tensor& root, std::vector<float>& values) {
       roots.push_back(root);
-      gradients.push_back(torch::from_blob(values.data(), root.sizes(), torch::kFloat32).to(device_, torch::kFloat32, false, true));
+      gradients.push_back(
+          torch::from_blob(values.data(), root.sizes(), torch::kFloat32).to(device_, torch::kFloat32, false, true));
     };
     add(out.logits, dlogits);
     if (psi.requires_grad()) add(psi, dpsi);
   }
-  const std::vector<torch::Tensor> result =
-      torch::autograd::grad(roots, step_.w.all(), gradients, false, false, true);
+  const std::vector<torch::Tensor> result = torch::autograd::grad(roots, step_.w.all(), gradients, false, false, true);
   torch::NoGradGuard no_gradient;
   download(flat_gradient(result), gradient);
   if (!batch.frozen_statistics && !batch.psi) download(step_.statistics, statistics);
@@ -308,8 +309,7 @@ TorchLosses Learner::update(const TorchBatch& batch, const TorchStepOptions& opt
   const int64_t n = batch.size;
   replay_.run("update " + std::to_string(n), [&] {
     const Inputs in = inputs(exchange_, n, false);
-    const torch::Tensor psi =
-        encode(sizes_, training_.w, training_.running, in.observations, batch.frozen_statistics);
+    const torch::Tensor psi = encode(sizes_, training_.w, training_.running, in.observations, batch.frozen_statistics);
     const Outputs out = head_->learn(training_.w, psi, in, options.discount, true);
     const std::vector<torch::Tensor> gradients =
         torch::autograd::grad({total_loss(out, options)}, training_.w.all(), {}, false, false, true);

@@ -23,7 +23,8 @@ namespace synpo {
 struct Replay::Recorder {
   struct Entry {
     bool seen = false;
-    std::thread::id by;  // cuDNN's and cuBLAS's handles are a thread's own, and none can be made while a graph is recorded
+    std::thread::id
+        by;  // cuDNN's and cuBLAS's handles are a thread's own, and none can be made while a graph is recorded
     std::unique_ptr<at::cuda::CUDAGraph> graph;
   };
   c10::cuda::CUDAStream stream;

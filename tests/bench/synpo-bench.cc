@@ -4,7 +4,8 @@
 //   synpo-bench train|forward B[,B...] THREADS [DEVICE [PRECISION]]
 //                                        states per second of the Table 2 network at batch B, a line each
 //   synpo-bench kitchen B THREADS [DEVICE [PRECISION]]
-//                                        the training step of the kitchens' network, that of Table 3, on random features
+//                                        the training step of the kitchens' network, that of Table 3, on random
+//                                        features
 //   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
 //
 // world_steps_per_s and kitchen_steps_per_s are steps of the two worlds, with what the agent sees at each, on one core.
@@ -143,8 +144,7 @@ double network_rate(bool train, int n, int threads, const NetworkBench& bench = 
     engine->take({parameters.data(), statistics.data(), m.data(), v.data()});
     // A GPU records the second update.
     for (int i = 0; i < 2; ++i) engine->update(parallel, data.batch, options.step(), {{}, ++step}, logits.data());
-    return rate(n, limit_s,
-                [&] { engine->update(parallel, data.batch, options.step(), {{}, ++step}, logits.data()); });
+    return rate(n, limit_s, [&] { engine->update(parallel, data.batch, options.step(), {{}, ++step}, logits.data()); });
   }
   std::vector<std::pair<int, int>> pairs;
   for (int i = 0; i < shape.envs * shape.tasks; ++i) pairs.emplace_back(i / shape.tasks, i % shape.tasks);
@@ -156,7 +156,7 @@ double network_rate(bool train, int n, int threads, const NetworkBench& bench = 
     parallel.run(shard_count(n, unit), [&](int shard, int thread) {
       const Range range = shard_range(n, unit, shard);
       engine->infer(thread, range.size(), data.observations.data() + range.begin * policy.observation_size(),
-                   pair.data() + range.begin, logits.data() + size_t(range.begin) * shape.actions);
+                    pair.data() + range.begin, logits.data() + size_t(range.begin) * shape.actions);
     });
   });
 }
@@ -350,7 +350,8 @@ class Head {
 
 void method_rows(int threads) {
   for (const std::string& method : method_names())
-    row(("train_" + method + "_states_per_s_b512").c_str(), network_rate(true, 512, threads, {.limit_s = 2, .method = method}), "states/s");
+    row(("train_" + method + "_states_per_s_b512").c_str(),
+        network_rate(true, 512, threads, {.limit_s = 2, .method = method}), "states/s");
   for (const int actions : {5, 100, 1000})
     for (const int action_embedding : {0, 32}) {
       Head head(actions, action_embedding, threads);
@@ -409,6 +410,8 @@ int main(int argc, char** argv) {
     method_rows(Parallel().threads());
     return 0;
   }
-  std::fputs("usage: synpo-bench rows | methods | train|forward|kitchen BATCH THREADS [DEVICE [PRECISION]] | ppo THREADS\n", stderr);
+  std::fputs(
+      "usage: synpo-bench rows | methods | train|forward|kitchen BATCH THREADS [DEVICE [PRECISION]] | ppo THREADS\n",
+      stderr);
   return 64;
 }
