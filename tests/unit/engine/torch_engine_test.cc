@@ -92,11 +92,12 @@ bool steady(const PolicyShape& shape, const std::string& method, const std::vect
   return true;
 }
 
-// Two networks of the same weights.
+// Two networks of the same weights. One thread where they are small: oneDNN 2.6, Debian's, writes past its memory in
+// the gradient of a convolution of 8 channels with AVX-512 and two threads.
 class TorchEngine : public testing::TestWithParam<Case> {
  protected:
   const int size_ = coarse() ? 256 : 12;  // of a batch
-  TorchEngine() : shape(shape_of(GetParam())), net(shape, GetParam().method), parallel(0) {
+  TorchEngine() : shape(shape_of(GetParam())), net(shape, GetParam().method), parallel(coarse() ? 0 : 1) {
     net.initialise();
     net.shake();
     other_gradient.assign(net.gradient.size(), 7);  // which is overwritten
