@@ -140,10 +140,103 @@ END
     [ "$(trained | wc -l)" = 5 ]
 }
 
+@test "reproduce: a run by its number, in any order, and the page of those that are done" {
+    stand_ins
+    local asked=(figure3 --budget 1e6 --seeds 2 -n 7 -o results)
+    scripts/reproduce "${asked[@]}" --run 7
+    scripts/reproduce "${asked[@]}" --run 1
+    trained >got
+    printf '%s\n' no-env-2 full-1 | cmp - got
+    [ ! -e results/README.md ]
+    scripts/reproduce "${asked[@]}" --merge
+    grep -qx 'So far: 2 of 10 runs.' results/README.md
+    grep -q '^render curves .* full=full-1.log no-env=no-env-2.log$' calls
+    grep -q '^matrix table .* full-1.tsv no-env-2.tsv$' calls
+    [ "$(trained | wc -l)" = 2 ]
+    scripts/reproduce "${asked[@]}"
+    ! grep 'So far' results/README.md || complain "the page of all runs"
+    [ "$(trained | sort | uniq -c | grep -c '^ *1 ')" = 10 ]
+}
+
+@test "reproduce: a page can be made of the first run alone, and there is none before that" {
+    stand_ins
+    for name in grid table4 table5 figure3 figure456 thor small; do
+        scripts/reproduce $name --budget 1e6 -o $name --merge
+        [ ! -e $name/README.md ] || complain "$name: a page of nothing"
+        scripts/reproduce $name --budget 1e6 -o $name --run 1
+        scripts/reproduce $name --budget 1e6 -o $name --merge
+        grep -q '^So far: 1 of ' $name/README.md || complain "$name: $(cat $name/README.md)"
+    done
+    # What other reproductions would take for the choice of the whole grid.
+    [ ! -e grid/choice.tsv ]
+}
+
+@test "reproduce --parallel: each run once, and after a failure those that are left" {
+    [[ $(parallel --version 2>/dev/null) == 'GNU parallel'* ]] || skip "no GNU parallel here"
+    stand_ins
+    local asked=(figure3 --budget 1e6 --seeds 2 -o results --parallel 2)
+    mkdir results
+    echo no-task-1 >results/stop
+    ! scripts/reproduce "${asked[@]}" 2>err || complain "a training that failed was passed over"
+    [ ! -e results/README.md ]
+    scripts/reproduce "${asked[@]}" -- --keep-order
+    trained | sort | uniq -c >got
+    [ "$(awk '$1 == 1' got | wc -l)" = 9 ]
+    grep -qx ' *2 no-task-1' got
+    grep -q 'train .*--resume no-task-1.save' calls
+    [ "$(awk -F '\t' 'NR > 1 && $7 == 0' results/joblog | wc -l)" = 10 ]
+    cp results/README.md page
+    scripts/reproduce figure3 --budget 1e6 --seeds 2 -o results
+    cmp page results/README.md
+    rm results/no-env-2.tsv
+    ! scripts/reproduce "${asked[@]}" 2>err || complain "a run without results was passed over"
+    grep -q '^reproduce: joblog has no-env-2 as done' err
+}
+
+@test "reproduce --slurm: one task for each run that is not done, and options of sbatch pass through" {
+    stand_ins
+    cat >build/sbatch <<'END'
+#!/bin/bash
+printf '%s\n' "$@" >"$CALLS.sbatch"
+echo '12;cluster'
+END
+    printf '#!/bin/bash\necho "$@" >>"$CALLS.squeue"\ncat in-queue 2>/dev/null\n' >build/squeue
+    chmod +x build/*
+    local asked=(figure3 --budget 1e6 --seeds 1 -o 'my results')
+    scripts/reproduce "${asked[@]}" --run 2
+    scripts/reproduce "${asked[@]}" --slurm -j 3 -- -p short --comment 'two words'
+    printf '%s\n' --parsable -p short --comment 'two words' slurm.sh | cmp - calls.sbatch
+    grep -qx '#SBATCH --array=1,3,4,5%3' 'my results/slurm.sh'
+    [ "$(cat 'my results/slurm.job')" = 12 ]
+    [ "$(trained | wc -l)" = 1 ]
+
+    echo 12_1 >'my results/in-queue'
+    status=0
+    scripts/reproduce "${asked[@]}" --slurm 2>err || status=$?
+    [ "$status" = 75 ]
+    grep -qx -- '-h -j 12' calls.squeue
+
+    # The script as a task of the array.
+    SLURM_ARRAY_TASK_ID=4 bash 'my results/slurm.sh'
+    trained | tail -n 1 | grep -qx no-disentanglement-1
+    grep -qx 'So far: 2 of 5 runs.' 'my results/README.md'
+    SLURM_CPUS_ON_NODE=3 scripts/reproduce "${asked[@]}" --run 1
+    grep -q 'train .* -j 3 -o full-1.part' calls
+
+    rm build/sbatch
+    if ! command -v sbatch; then
+        status=0
+        scripts/reproduce "${asked[@]}" --slurm 2>err || status=$?
+        [ "$status" = 69 ]
+    fi
+}
+
 @test "reproduce: nonsense is wrong usage, and says what is right" {
     stand_ins
     for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" \
-        "table4 --budget 12" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
+        "table4 --run 0" "table4 --run" "table4 --slurm --merge" "table4 --parallel 2 --run 1" "table4 --parallel x" \
+        "table4 -- -p short" "table4 --run 1 -- -p short" "common-runs" \
+        "table4 --run 11 --budget 1e6" "table4 --budget 12" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
         status=0
         # shellcheck disable=SC2086
         scripts/reproduce $words 2>err || status=$?
