@@ -231,6 +231,16 @@ END
     fi
 }
 
+@test "reproduce: a device and a precision are those of every training and evaluation, and of the folder" {
+    stand_ins
+    local asked=(figure3 --budget 1e6 --seeds 1 -o results)
+    scripts/reproduce "${asked[@]}" --device cuda --precision bf16
+    [ "$(grep -c '^train .* --device cuda --precision bf16 ' calls)" = 5 ]
+    [ "$(grep -c '^eval .* --device cuda --precision bf16 ' calls)" = 5 ]
+    ! scripts/reproduce "${asked[@]}" 2>err || complain "a folder of another device was gone on with"
+    grep -q '^reproduce: found .* are of --budget 1e6 -n 100 --device cuda --precision bf16: ' err
+}
+
 @test "reproduce: nonsense is wrong usage, and says what is right" {
     stand_ins
     for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" \

@@ -99,15 +99,17 @@ teardown() {
     becomes yes there many/mlp-1.log
     # What Slurm does before the time limit: SIGUSR1 to the script of the task.
     pkill -USR1 -f "^/bin/bash $PWD/spool/job0*$(squeue -h -r -j "${job}_2" -o %A)/slurm_script"
+    squeue -r
     status=0
     scripts/reproduce "${asked[@]}" -o many --slurm 2>err || status=$?
     [ "$status" = 75 ]
     grep -q "^reproduce: job $job is not over" err
     becomes yes there many/mlp-2.log
     scancel "${job}_4"
+    squeue -r
 
     becomes '' squeue -h -j "$job"
-    cat many/*.out
+    tail -n 50 many/*.out finished
     for task in 1 2; do
         [ "$(grep -c ' goes on$' many/slurm-"${job}_$task".out)" = 1 ]
         [ "$(grep -c "JobState=PENDING.* ArrayTaskId=$task " finished)" = 1 ]
@@ -117,11 +119,13 @@ teardown() {
     [ -f many/mlp-2.save ]
     grep -q '^So far: 3 of 4 runs' many/README.md
 
-    scripts/reproduce "${asked[@]}" -o many --slurm -- --wait
+    scripts/reproduce "${asked[@]}" -o many --slurm
+    job=$(cat many/slurm.job)
     grep -qx '#SBATCH --array=4' many/slurm.sh
-    grep -q 'mlp-2 goes on$' many/slurm-"$(cat many/slurm.job)"_4.out
+    becomes '' squeue -h -j "$job"
+    grep -q 'mlp-2 goes on$' many/slurm-"${job}_4".out
     for file in README.md {synpo,mlp}-{1,2}.{tsv,ckpt}; do cmp serial/$file many/$file; done
     cat many/README.md
     scripts/reproduce "${asked[@]}" -o many --slurm
-    [ "$(squeue -h)" = '' ]
+    [ "$(cat many/slurm.job)" = "$job" ]
 }
