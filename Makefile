@@ -33,7 +33,8 @@ MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
 PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
             libgtest-dev bats jq man-db python3-numpy
 
-BENCH_PACKAGES := python3-torch libopenblas0-openmp
+# LibTorch on Debian takes any BLAS; with the reference one it crawls.
+TORCH_PACKAGES := libtorch-dev libopenblas0-openmp
 
 # The plug-in of LibTorch, for --device: against Debian's LibTorch, or the one in the folder TORCH. That of PyTorch is
 #   python3 -c 'import torch, os; print(os.path.dirname(torch.__file__))'
@@ -76,11 +77,8 @@ endif
 ifneq ($(filter deps-torch,$(MAKECMDGOALS)),)
 $(TORCH_OBJ): | deps-torch
 endif
-ifneq ($(filter deps-bench,$(MAKECMDGOALS)),)
-bench check-torch: | deps-bench
-endif
 
-.PHONY: all lib torch check lint bench demo gallery deps deps-bench deps-torch install clean check-torch gpu-kit
+.PHONY: all lib torch check lint bench demo gallery deps deps-torch install clean check-torch gpu-kit
 all: $(TOOLS:%=$(B)/%)
 	@echo "The programs are in $(B)/: $(TOOLS)"
 lib: $(B)/libsynpo.a
@@ -174,10 +172,12 @@ check: all $(B)/unit-tests
 lint:
 	scripts/lint
 
-check-torch: $(B)/unit-tests
-	tests/torch/check $(B)
+# The two engines beside each other, with a table of the worst errors. AMX rounds the CPU's products to less than
+# float32.
+check-torch: torch $(B)/engine-tests
+	$(Q)! grep -q amx_tile /proc/cpuinfo || export SYNPO_KERNELS=avx512; SYNPO_TORCH= $(B)/engine-tests --gtest_brief=1
 
-bench: all $(B)/synpo-bench
+bench: all $(B)/synpo-bench | $(filter torch,$(MAKECMDGOALS))
 	scripts/bench
 
 gallery: all
@@ -193,16 +193,13 @@ deps:
 gpu-kit:
 	scripts/gpu-kit
 
-# PyTorch, for bench and check-torch. Debian's PyTorch takes any BLAS; with the reference one it crawls.
-deps-bench:
-	scripts/deps $(BENCH_PACKAGES)
-
 deps-torch:
-	scripts/deps libtorch-dev libopenblas0-openmp
+	scripts/deps $(TORCH_PACKAGES)
 
-install: all
+install: all | $(filter torch,$(MAKECMDGOALS))
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/man/man1 $(DESTDIR)$(PREFIX)/share/man/man5 $(DESTDIR)$(PREFIX)/share/man/man7
 	install -m 755 $(TOOLS:%=$(B)/%) $(DESTDIR)$(PREFIX)/bin
+	[ ! -e $(B)/libsynpo_torch.so ] || install -D -m 644 -t $(DESTDIR)$(PREFIX)/lib/synpo $(B)/libsynpo_torch.so
 	for section in 1 5 7; do install -m 644 man/*.$$section $(DESTDIR)$(PREFIX)/share/man/man$$section; done
 
 clean:

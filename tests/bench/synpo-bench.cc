@@ -6,7 +6,10 @@
 //   synpo-bench kitchen B THREADS [DEVICE [PRECISION]]
 //                                        the training step of the kitchens' network, that of Table 3, on random
 //                                        features
-//   synpo-bench ppo THREADS              steps of the worlds per second of PPO, with all that is learned from them
+//   synpo-bench ppo THREADS [DEVICE [PRECISION]]
+//                                        steps of the worlds per second of PPO, with all that is learned from them
+//
+// DEVICE and PRECISION are those of synpo-train; with torch-cpu the same work on the same batch is LibTorch's.
 //
 // world_steps_per_s and kitchen_steps_per_s are steps of the two worlds, with what the agent sees at each, on one core.
 // train_METHOD_states_per_s_b512 is a training step of each method as the fast recipe has it.
@@ -161,7 +164,7 @@ double network_rate(bool train, int n, int threads, const NetworkBench& bench = 
   });
 }
 
-double ppo_rate(int threads) {
+double ppo_rate(int threads, const DeviceOptions& device) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(threads);
   Model model;
@@ -169,7 +172,7 @@ double ppo_rate(int threads) {
   model.shape = recipe(kDefaultRecipe).shape(world);
   for (int i = 0; i < 144; ++i) model.seen.push_back({i % 20, (i + 3 * (i / 20)) % 20});
   model.policy = make_policy(model.method, model.shape);
-  compute_on({}, parallel, model);
+  compute_on(device, parallel, model);
   model.parameters.grow(model.policy->parameters().total());
   model.statistics.grow(model.policy->statistics().total());
   model.policy->initialise({}, model.parameters.data(), model.statistics.data());
@@ -388,12 +391,17 @@ int rows() {
 
 int main(int argc, char** argv) {
   const std::string what = argc > 1 ? argv[1] : "";
+  const auto device_at = [&](int at) {
+    DeviceOptions device;
+    if (argc > at) device.device = argv[at];
+    if (argc > at + 1) device.precision = argv[at + 1];
+    return device;
+  };
   if (argc >= 4 && argc <= 6 && (what == "train" || what == "forward" || what == "kitchen")) {
     NetworkBench bench;
     if (what == "kitchen") bench.world = "kitchen";
-    if (argc > 4) bench.device.device = argv[4];
-    if (!bench.device.is_cpu()) bench.limit_s = 2;  // steadier than a CPU
-    if (argc > 5) bench.device.precision = argv[5];
+    bench.device = device_at(4);
+    if (bench.device.device.starts_with("cuda")) bench.limit_s = 2;  // steadier than a CPU
     std::stringstream batches(argv[2]);
     for (std::string batch; std::getline(batches, batch, ',');) {
       std::printf("%.0f\n", network_rate(what != "forward", std::atoi(batch.c_str()), std::atoi(argv[3]), bench));
@@ -401,8 +409,8 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
-  if (argc == 3 && what == "ppo") {
-    std::printf("%.0f\n", ppo_rate(std::atoi(argv[2])));
+  if (argc >= 3 && argc <= 5 && what == "ppo") {
+    std::printf("%.0f\n", ppo_rate(std::atoi(argv[2]), device_at(3)));
     return 0;
   }
   if (argc == 2 && what == "rows") return rows();
@@ -411,7 +419,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   std::fputs(
-      "usage: synpo-bench rows | methods | train|forward|kitchen BATCH THREADS [DEVICE [PRECISION]] | ppo THREADS\n",
+      "usage: synpo-bench rows | methods | train|forward|kitchen BATCH[,BATCH...] THREADS [DEVICE [PRECISION]] |\n"
+      "       ppo THREADS [DEVICE [PRECISION]]\n",
       stderr);
   return 64;
 }

@@ -1,36 +1,27 @@
 #!/usr/bin/python3
-"""PPO of synpo in PyTorch (torch_reference.py): the reference of the C++ engine.
+"""PPO of synpo in PyTorch: makes the numbers in tests/data that the tests compare with.
 
   torch_ppo.py dump -o FILE [--seed S]
       what PPO is made of, in float64 as safetensors: advantages, the clipped loss and its gradients, RMSProp;
       with the default seed tests/data/torch_ppo.safetensors
-  torch_ppo.py bench --threads T [--seconds S]
-      steps of the worlds per second in float32 at full width, one number on stdout
 """
 import argparse
-import copy
 import itertools
 import sys
 
 sys.dont_write_bytecode = True  # no __pycache__ among the scripts
-import torch_reference as reference  # before numpy and torch, whose environment it sets
 import numpy as np
 import torch
+import torch_reference as reference
 from torch import nn
 from torch.nn import functional as F
 
 ACTIONS = reference.ACTIONS["pictures"]
 GOES_ON, TERMINATED, TRUNCATED = range(3)
-LANES, ROLLOUT, EPOCHS, MINIBATCHES = 16, 128, 4, 4
 GAMMA, LAMBDA = 0.99, 0.95
 CLIP, ENTROPY_WEIGHT, GRADIENT_NORM = 0.1, 0.01, 0.5
-RMSPROP = dict(lr=2.5e-5, alpha=0.99, eps=1e-8, weight_decay=1e-4)
-LONG_STEPS = dict(RMSPROP, lr=0.01, weight_decay=0.1)  # so that three of them show
-AUXILIARY = dict(reward=0.01, env=0.1, task=0.001)
-VALUE_HIDDEN = 512
+RMSPROP = dict(lr=0.01, alpha=0.99, eps=1e-8, weight_decay=0.1)  # steps so long that three of them show
 
-
-# --- dump ----------------------------------------------------------------------------------------
 
 def next_values(value, end, cut_value, last_value):
     """V of the state after each step, 0 after a terminal one."""
@@ -100,7 +91,7 @@ def rmsprop_results(rng, steps=3):
     gradients = draw(steps, 11) * np.array([1, 3, 0.05])[:, None]
     joined = lambda tensors: torch.cat(tensors).detach().numpy().copy()
     start, after = joined(parameters), []
-    optimiser = torch.optim.RMSprop(parameters, **LONG_STEPS)
+    optimiser = torch.optim.RMSprop(parameters, **RMSPROP)
     for gradient in torch.from_numpy(gradients):
         for parameter, part in zip(parameters, gradient.split((7, 4))):
             parameter.grad = part.clone()
@@ -116,93 +107,8 @@ def dump(args):
     parts = dict(gae=advantage_results(rng), clip=clipped_results(rng), rmsprop=rmsprop_results(rng))
     tensors = {f"{part}.{name}": array for part, results in parts.items() for name, array in results.items()}
     metadata = dict(discount=GAMMA, **{"lambda": LAMBDA}, clip=CLIP, entropy=ENTROPY_WEIGHT,
-                    gradient_norm=GRADIENT_NORM, **LONG_STEPS)
+                    gradient_norm=GRADIENT_NORM, **RMSPROP)
     reference.write_safetensors(args.output, tensors, {key: str(value) for key, value in metadata.items()})
-
-
-# --- bench ---------------------------------------------------------------------------------------
-
-class Learner:
-    """PPO on SynPo. Worlds stepped in Python would be slow through no fault of PyTorch: what the lanes see and how they
-    are rewarded is drawn beforehand, and costs nothing here."""
-
-    def __init__(self, net, worlds, memory_format, head, foreach, rollout=ROLLOUT, minibatches=MINIBATCHES):
-        layout = torch.channels_last if memory_format == "channels_last" else torch.contiguous_format
-        self.net = net.to(memory_format=layout).eval()  # frozen statistics
-        self.value = reference.Mlp(net.w.feature + 2 * net.w.embedding, VALUE_HIDDEN, 1)
-        self.head = getattr(reference.SynPo, head)
-        self.rollout, self.minibatches = rollout, minibatches
-        count = rollout * LANES
-        self.worlds = {name: tensor[:count] for name, tensor in worlds.items()}
-        self.worlds["input"] = self.worlds["input"].contiguous(memory_format=layout)
-        self.parameters = [*net.parameters(), *self.value.parameters()]
-        self.optimiser = torch.optim.RMSprop(self.parameters, foreach=foreach, **RMSPROP)
-
-    def values(self, psi, embedded):
-        return self.value(torch.cat([psi, embedded.detach()], 1)).squeeze(1)
-
-    @torch.no_grad()
-    def collect(self):
-        """A rollout's steps, [steps * lanes] each."""
-        encoder = reference.fused(self.net.encoder)
-        pairs, index = self.net.pairs(self.worlds)
-        alpha = self.net.alpha(pairs)
-        of_step = lambda tensor: tensor.split(LANES)
-        chosen = []
-        for picture, row in zip(of_step(self.worlds["input"]), of_step(index)):
-            psi = encoder(picture)
-            distribution = torch.distributions.Categorical(logits=self.head(self.net, psi, None, alpha, row)
-                                                           + self.net.policy["bias"])
-            action = distribution.sample()
-            chosen.append((action, distribution.log_prob(action), self.values(psi, pairs[row])))
-        action, log_probability, value = (torch.stack(part) for part in zip(*chosen))
-        in_lanes = lambda name: self.worlds[name].view(-1, LANES)
-        delta = in_lanes("reward") + GAMMA * next_values(value, in_lanes("end"), value, value[-1]) - value
-        keep = (in_lanes("end") == GOES_ON) * (GAMMA * LAMBDA)
-        advantage, following = torch.empty_like(delta), 0
-        for t in reversed(range(len(delta))):
-            advantage[t] = following = delta[t] + keep[t] * following
-        target = advantage + value
-        advantage = (advantage - advantage.mean()) / (advantage.std(unbiased=False) + 1e-8)
-        made = dict(label=action, taken=action, log_probability=log_probability, advantage=advantage, target=target)
-        return {**self.worlds, **{name: tensor.flatten() for name, tensor in made.items()}}
-
-    def learn(self, batch):
-        self.optimiser.zero_grad(set_to_none=True)
-        losses, logits, psi = self.net.losses(batch, self.head)
-        value = self.values(psi, self.net.embedded(batch))
-        policy, error, entropy, _ = ppo_losses(logits, batch["taken"], batch["log_probability"], batch["advantage"],
-                                               value, batch["target"])
-        auxiliary = sum(weight * losses[name] for name, weight in AUXILIARY.items())
-        (policy + error - ENTROPY_WEIGHT * entropy + auxiliary).backward()
-        nn.utils.clip_grad_norm_(self.parameters, GRADIENT_NORM)
-        self.optimiser.step()
-
-    def update(self):
-        steps = self.collect()
-        count = self.rollout * LANES
-        for _ in range(EPOCHS):
-            for rows in torch.randperm(count).split(count // self.minibatches):
-                self.learn({name: tensor[rows] for name, tensor in steps.items()})
-
-
-def random_worlds(count, w, rng):
-    """What the lanes meet: an episode ends after 40 steps or so."""
-    batch = reference.to_torch(reference.random_batch(count, w, rng, pairs=144), torch.float32)
-    ends = np.where(rng.random(count) < 1 / 40, TERMINATED, GOES_ON).astype(np.uint8)
-    return dict({name: batch[name] for name in ("input", "env", "task", "reward")}, end=torch.from_numpy(ends))
-
-
-def bench(args):
-    reference.prepare(args.threads)
-    net = reference.SynPo(reference.widths(reference.FULL["pictures"], "pictures"))
-    reference.randomise(net, torch.Generator().manual_seed(0))
-    worlds = random_worlds(ROLLOUT * LANES, net.w, np.random.default_rng(0))
-    # A quarter of an update, with minibatches of the same size.
-    trial = lambda **choice: min(reference.step_times(Learner(copy.deepcopy(net), worlds, **choice,
-                                                              rollout=ROLLOUT // 4, minibatches=1).update, 0.5))
-    choice = reference.fastest(dict(reference.OPTIONS["pictures"], foreach=(True, False)), trial)
-    reference.report(ROLLOUT * LANES, reference.step_times(Learner(net, worlds, **choice).update, args.seconds), choice)
 
 
 def main():
@@ -211,11 +117,8 @@ def main():
     p = commands.add_parser("dump")
     p.add_argument("-o", "--output", required=True)
     p.add_argument("--seed", type=int, default=1)
-    p = commands.add_parser("bench")
-    p.add_argument("--threads", type=int, required=True)
-    p.add_argument("--seconds", type=float, default=8)
     args = parser.parse_args()
-    {"dump": dump, "bench": bench}[args.command](args)
+    dump(args)
 
 
 if __name__ == "__main__":

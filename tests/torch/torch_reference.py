@@ -1,48 +1,22 @@
 #!/usr/bin/python3
-"""The imitation-learning step of synpo in PyTorch: the reference of the C++ engine.
+"""The imitation-learning step of synpo in PyTorch: makes the numbers in tests/data that the tests compare with.
 
   torch_reference.py dump -o FILE [--method NAME] [--sight pictures|features] [--batch N] [--seed S] [widths]
       one training step in float64 on a random model and batch, as safetensors
-  torch_reference.py check FILE
-      the same step in float32 from the file's parameters and inputs, against the file's results
-  torch_reference.py bench --mode train|forward --batch N --threads T [--sight pictures|features] [--seconds S]
-      states per second in float32 at full width, one number on stdout
   torch_reference.py committed -o tests/data
       the dumps that are in the tree
 """
 import argparse
-import copy
-import ctypes
-import itertools
 import json
 import math
-import os
-import statistics
 import struct
 import sys
-import time
 from types import SimpleNamespace
-
-# A caller's OPENBLAS_CORETYPE or the like would slow PyTorch down unnoticed. Read when torch is loaded.
-for key in [k for k in os.environ if k.startswith("OPENBLAS_")]:
-    del os.environ[key]
-if sys.argv[1:2] == ["bench"]:
-    # OpenBLAS multiplies with SSE3 on a processor newer than itself: at a quarter of the rate that it has with what
-    # the processor can.
-    with open("/proc/cpuinfo") as file:
-        flags = set(next((line for line in file if line.startswith("flags")), "").split())
-    for core, needed in (("SkylakeX", {"avx512f", "avx512bw", "avx512dq", "avx512vl"}), ("Haswell", {"avx2", "fma"})):
-        if needed <= flags:
-            os.environ["OPENBLAS_CORETYPE"] = core
-            break
-if "--threads" in sys.argv[:-1]:  # PyTorch does not tell OpenBLAS how many threads to use
-    os.environ["OPENBLAS_NUM_THREADS"] = sys.argv[sys.argv.index("--threads") + 1]
 
 import numpy as np
 import torch
 from torch import nn
 from torch.nn import functional as F
-from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 ACTIONS = dict(pictures=5, features=7)
 STRIDES = (2, 2, 2, 1)
@@ -134,28 +108,6 @@ class TemporalEncoder(nn.Module):
         return self.fc(torch.cat([self.convolve(x[:, :-HAND]), self.object[x[:, -HAND].long()]], 1))
 
 
-class UnrolledEncoder(TemporalEncoder):
-    """The same with matrices in place of convolutions, and nothing multiplied with the padding. bench keeps the faster
-    one."""
-
-    def __init__(self, w, encoder):
-        super().__init__(w)
-        for name in ("conv1", "conv2"):
-            conv = getattr(encoder, name)
-            linear = nn.Linear(3 * conv.in_channels, conv.out_channels)
-            with torch.no_grad():
-                linear.weight.copy_(conv.weight.permute(0, 2, 1).flatten(1))
-                linear.bias.copy_(conv.bias)
-            setattr(self, name, linear)
-        self.object, self.fc = encoder.object, encoder.fc
-
-    def convolve(self, x):
-        view, channels = x.shape[1] // HISTORY, self.conv2.out_features
-        first = F.linear(x[:, :2 * view], self.conv1.weight[:, view:], self.conv1.bias)
-        y = self.relu1(torch.cat([first, self.conv1(x[:, view:])], 1))
-        return self.relu2(F.linear(y, self.conv2.weight[:, channels:], self.conv2.bias))
-
-
 class Mlp(nn.Module):
     def __init__(self, inputs, hidden, outputs):
         super().__init__()
@@ -233,31 +185,21 @@ class SynPo(Policy):
         actions, feature, basis = theta.shape
         return (psi @ theta.permute(1, 0, 2).reshape(feature, actions * basis)).view(-1, actions, basis)
 
-    # Three ways to the same logits; bench keeps the fastest. A head takes psi [N, d], the products or None,
-    # coefficients [P, K], each state's pair [N], and returns psi^T (sum_k coefficient_k Theta_k) phi(a) as [N, A].
-    def by_sum(self, psi, products, coefficients, index):
-        products = self.products(psi) if products is None else products
+    @staticmethod
+    def weigh(products, coefficients, index):
+        """psi^T (sum_k coefficient_k Theta_k) phi(a) as [N, A], of coefficients [P, K] and each state's pair [N]."""
         return (products * coefficients[index].unsqueeze(1)).sum(2)
 
-    def by_bmm(self, psi, products, coefficients, index):
-        products = self.products(psi) if products is None else products
-        return torch.bmm(products, coefficients[index].unsqueeze(2)).squeeze(2)
-
-    def by_matrix(self, psi, products, coefficients, index):
-        theta = self.matrices()
-        composed = coefficients @ theta.flatten(0, 1).t()  # U of each pair: [P, A*d]
-        return torch.bmm(composed[index].view(-1, *theta.shape[:2]), psi.unsqueeze(2)).squeeze(2)
-
-    def logits(self, batch, head=by_sum):
+    def logits(self, batch):
         pairs, index = self.pairs(batch)
-        return head(self, self.encoder(batch["input"]), None, self.alpha(pairs), index) + self.policy["bias"]
+        return self.weigh(self.products(self.encoder(batch["input"])), self.alpha(pairs), index) + self.policy["bias"]
 
-    def losses(self, batch, head=by_sum):
+    def losses(self, batch):
         psi = self.encoder(batch["input"])
         products = self.products(psi)
         pairs, index = self.pairs(batch)
         rows, taken = torch.arange(len(psi)), batch["taken"]
-        logits = head(self, psi, products, self.alpha(pairs), index) + self.policy["bias"]
+        logits = self.weigh(products, self.alpha(pairs), index) + self.policy["bias"]
         reward = (products[rows, taken] * self.beta(pairs)[index]).sum(1) + self.reward["bias"][taken]
         x = products[rows, batch["label"]]
         losses = dict(policy=F.cross_entropy(logits, batch["label"]), reward=F.mse_loss(reward, batch["reward"]))
@@ -463,15 +405,6 @@ def write_safetensors(path, tensors, metadata):
             file.write(np.ascontiguousarray(array).tobytes())
 
 
-def read_safetensors(path):
-    with open(path, "rb") as file:
-        header = json.loads(file.read(struct.unpack("<Q", file.read(8))[0]))
-        data = file.read()
-    metadata = header.pop("__metadata__")
-    view = lambda e: np.frombuffer(data[slice(*e["data_offsets"])], DTYPES[e["dtype"]]).reshape(e["shape"])
-    return {name: view(entry) for name, entry in header.items()}, metadata
-
-
 NORM_NAMES = {"weight": "scale", "bias": "shift", "running_mean": "mean", "running_var": "variance"}
 
 
@@ -494,18 +427,7 @@ def to_file(name, tensor):
     return np.ascontiguousarray(tensor.float().numpy())
 
 
-def from_file(name, array):
-    tensor = torch.from_numpy(array.copy())
-    if ".shortcut." in name:
-        return tensor.t()[:, :, None, None]
-    if tensor.dim() == 4:
-        return tensor.permute(3, 2, 0, 1)
-    if tensor.dim() == 3 and name.endswith(".weight"):
-        return tensor.permute(2, 1, 0)
-    return tensor.t() if tensor.dim() == 2 and name.endswith(".weight") else tensor
-
-
-# --- dump and check ------------------------------------------------------------------------------
+# --- dump ----------------------------------------------------------------------------------------
 
 def step_results(net, batch, weights):
     """One training step. Returns what the file holds of it, and the smallest |input| of any ReLU."""
@@ -566,149 +488,6 @@ def dump(args):
     print(f"seed {seed}, smallest |ReLU input| {margin:.3g}", file=sys.stderr)
 
 
-def check(args):
-    """Prints the worst relative error per kind of tensor; fails over 1e-4."""
-    tensors, metadata = read_safetensors(args.file)
-    sight = "pictures" if "channels" in metadata else "features"
-    number = lambda text: tuple(map(int, text.split(","))) if "," in text else int(text)
-    sizes = {key: number(metadata[key]) for key in FULL[sight]}
-    net = METHODS[metadata["method"]](widths(sizes, sight, sf_loss=metadata["sf_loss"]))
-    with torch.no_grad():
-        for name, p in net.named_parameters():
-            p.copy_(from_file(name, tensors["param." + file_name(name)]))
-    inputs = ("input", "env", "task", "label", "taken", "reward", "next", "planner_q")
-    batch = {name: tensors[name] for name in inputs if name in tensors}
-    weights = dict(policy=1, **{name: float(metadata["weight_" + name]) for name in ("reward", "env", "task")})
-    result, margin = step_results(net, to_torch(batch, torch.float32), weights)
-    worst = {}
-    for name, got in result.items():
-        want = tensors[name]
-        error = np.nanmax(np.abs(got.astype(np.float64) - want)) / (np.nanmax(np.abs(want)) or 1)
-        kind = name.split(".")[0]
-        worst[kind] = max(worst.get(kind, (0, "")), (error, name))
-    for error, name in worst.values():
-        print(f"{error:.2e}\t{name}")
-    print(f"smallest |ReLU input| {margin:.3g}", file=sys.stderr)
-    if not max(worst.values())[0] < 1e-4:
-        sys.exit("torch_reference: float32 and the file disagree")
-
-
-# --- bench ---------------------------------------------------------------------------------------
-
-def blas():
-    """The BLAS that PyTorch runs on, or None: Debian's fallback, the reference one, multiplies at a fiftieth of
-    OpenBLAS's rate."""
-    with open("/proc/self/maps") as maps:
-        libraries = {line.split()[-1] for line in maps if "/" in line}
-    for library in libraries:
-        if "libopenblas" in library:
-            name = ctypes.CDLL(library).openblas_get_corename
-            name.restype = ctypes.c_char_p
-            return "openblas-" + name().decode()
-    return next((name for name in ("mkl_rt", "blis", "atlas") if any(name in library for library in libraries)), None)
-
-
-def fused(encoder):
-    """A copy for evaluation with every norm folded into its convolution."""
-    encoder = copy.deepcopy(encoder).eval()
-    for block in [m for m in encoder.modules() if isinstance(m, Block)]:
-        for conv, norm in (("conv1", "norm1"), ("conv2", "norm2"), ("shortcut", "shortcut_norm")):
-            if isinstance(getattr(block, conv), nn.Conv2d):
-                setattr(block, conv, fuse_conv_bn_eval(getattr(block, conv), getattr(block, norm)))
-                setattr(block, norm, nn.Identity())
-    return encoder
-
-
-def make_step(mode, net, batches, head, foreach, memory_format="contiguous", unrolled=False):
-    """A function that does one step on the next batch."""
-    if unrolled:
-        net.encoder = UnrolledEncoder(net.w, net.encoder)
-    layout = torch.channels_last if memory_format == "channels_last" else torch.contiguous_format
-    net = net.to(memory_format=layout)
-    batches = itertools.cycle([{**b, "input": b["input"].contiguous(memory_format=layout)} for b in batches])
-    head = getattr(SynPo, head)
-    if mode == "forward":
-        net.eval()
-        net.encoder = fused(net.encoder)
-
-        def forward():
-            with torch.inference_mode():
-                return net.logits(next(batches), head)
-        return forward
-    net.train()
-    optimiser = torch.optim.Adam(net.parameters(), foreach=foreach, **ADAM)
-    weights = dict(policy=1, reward=REWARD_WEIGHT, env=0.1, task=0.1)
-
-    def train():
-        optimiser.zero_grad(set_to_none=True)
-        total(net.losses(next(batches), head)[0], weights).backward()
-        optimiser.step()
-    return train
-
-
-def step_times(step, seconds):
-    """At least two steps, after one unmeasured."""
-    step()
-    times, end = [], time.perf_counter() + seconds
-    while len(times) < 2 or time.perf_counter() < end:
-        start = time.perf_counter()
-        step()
-        times.append(time.perf_counter() - start)
-    return times
-
-
-def prepare(threads):
-    """Sets PyTorch up to be as fast as it can be."""
-    if not blas():
-        sys.exit("torch_reference: PyTorch runs on the reference BLAS, no fair comparison; install libopenblas0-openmp")
-    # Keeps freed memory (no mmap, no trimming): fresh pages in every step would cost PyTorch some 7 %.
-    libc = ctypes.CDLL(None)
-    for option, value in ((-4, 0), (-1, 2**31 - 1), (-2, 1 << 26)):  # M_MMAP_MAX, M_TRIM_THRESHOLD, M_TOP_PAD
-        libc.mallopt(option, value)
-    torch.set_num_threads(threads)
-    torch.set_flush_denormal(True)
-
-
-def fastest(options, seconds):
-    """Of each option, given with its values, the one with which seconds(**choice) is least: one after the other, as
-    they hardly depend on each other."""
-    choice = {key: values[0] for key, values in options.items()}
-    best = seconds(**choice)
-    for key, values in options.items():
-        for value in values[1:]:
-            kept, choice[key] = choice[key], value
-            tried = seconds(**choice)
-            if tried < best:
-                best = tried
-            else:
-                choice[key] = kept
-    return choice
-
-
-def report(states, times, choice):
-    print("torch", torch.__version__, blas(), *(f"{key}={value}" for key, value in choice.items()),
-          f"best={states / min(times):.0f}", file=sys.stderr)
-    print(f"{states / statistics.median(times):.0f}")
-
-
-# The fastest way may depend on these.
-HEADS = dict(head=("by_sum", "by_bmm", "by_matrix"))
-OPTIONS = dict(pictures=dict(memory_format=("channels_last", "contiguous"), **HEADS),
-               features=dict(unrolled=(False, True), **HEADS))
-
-
-def bench(args):
-    prepare(args.threads)
-    rng = np.random.default_rng(0)
-    net = SynPo(widths(FULL[args.sight], args.sight))
-    randomise(net, torch.Generator().manual_seed(0))
-    batches = [to_torch(random_batch(args.batch, net.w, rng, pairs=144), torch.float32) for _ in range(2)]
-    options = dict(OPTIONS[args.sight], foreach=(True, False) if args.mode == "train" else (None,))
-    choice = fastest(options, lambda **choice: min(step_times(make_step(args.mode, copy.deepcopy(net), batches,
-                                                                        **choice), 0.5)))
-    report(args.batch, step_times(make_step(args.mode, net, batches, **choice), args.seconds), choice)
-
-
 def parse(arguments):
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(dest="command", required=True)
@@ -728,14 +507,6 @@ def parse(arguments):
         p.add_argument("--" + name.replace("_", "-"), type=int)
     p = commands.add_parser("committed")
     p.add_argument("-o", "--output", required=True, help="folder")
-    p = commands.add_parser("check")
-    p.add_argument("file")
-    p = commands.add_parser("bench")
-    p.add_argument("--mode", choices=("train", "forward"), required=True)
-    p.add_argument("--sight", choices=ACTIONS, default="pictures")
-    p.add_argument("--batch", type=int, required=True)
-    p.add_argument("--threads", type=int, required=True)
-    p.add_argument("--seconds", type=float, default=8)
     return parser.parse_args(arguments)
 
 
@@ -746,7 +517,7 @@ def committed(args):
 
 def main():
     args = parse(sys.argv[1:])
-    {"dump": dump, "committed": committed, "check": check, "bench": bench}[args.command](args)
+    {"dump": dump, "committed": committed}[args.command](args)
 
 
 if __name__ == "__main__":

@@ -4,14 +4,18 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 
 #include "engine/cpu_engine.h"
 #include "engine/device.h"
 #include "helpers/policy_fixture.h"
 #include "kernel/kernels.h"
 #include "learn/ppo/clipped_objective.h"
+#include "learn/recipe.h"
+#include "play/world_factory.h"
 
 namespace synpo {
 namespace {
@@ -41,11 +45,18 @@ struct Case {
   int action_embedding = 0;
   SfLoss sf_loss = SfLoss::kTemporalDifference;
   bool normalise = false;
+  bool full = false;  // as wide as the paper's
 };
 
 void PrintTo(const Case& c, std::ostream* to) { *to << c.name; }
 
 PolicyShape shape_of(const Case& c) {
+  if (c.full) {
+    PolicyShape shape =
+        c.features ? recipe("paper", c.method, Sight::kFeatures).shape(*open_world("kitchen")) : paper_shape();
+    shape.sf_loss = c.sf_loss;
+    return shape;
+  }
   PolicyShape shape = c.features ? tiny_feature_shape() : tiny_shape(c.normalise);
   if (!c.features) shape.channels = {8, 8, 16, 16};
   shape.basis = 40;
@@ -96,7 +107,7 @@ bool steady(const PolicyShape& shape, const std::string& method, const std::vect
 // the gradient of a convolution of 8 channels with AVX-512 and two threads.
 class TorchEngine : public testing::TestWithParam<Case> {
  protected:
-  const int size_ = coarse() ? 256 : 12;  // of a batch
+  const int size_ = coarse() ? 256 : GetParam().full ? 4 : 12;  // of a batch
   TorchEngine() : shape(shape_of(GetParam())), net(shape, GetParam().method), parallel(coarse() ? 0 : 1) {
     net.initialise();
     net.shake();
@@ -140,7 +151,7 @@ class TorchEngine : public testing::TestWithParam<Case> {
       }
     }
   }
-  // One step of both engines; prints how far they are apart.
+  // One step of both engines; notes how far they are apart.
   void compare_steps(const StepBatch<float>& batch) {
     std::vector<float> other_statistics = net.statistics;
     CpuEngine cpu(*net.policy);
@@ -153,8 +164,17 @@ class TorchEngine : public testing::TestWithParam<Case> {
                  gradient = worst_tensor(net.policy->parameters(), other_gradient.data(), net.gradient.data());
     EXPECT_LT(scores, scores_limit());
     worst_tensor(net.policy->statistics(), other_statistics.data(), net.statistics.data());
-    std::printf("  %-12s loss %.1e  logits %.1e  worst gradient %.1e\n", GetParam().name,
-                std::abs(got.total - want.total) / std::abs(want.total), scores, gradient);
+    Errors& worst = worst_[GetParam().name];
+    worst.loss = std::max(worst.loss, std::abs(got.total - want.total) / std::abs(want.total));
+    worst.scores = std::max(worst.scores, scores);
+    worst.gradient = std::max(worst.gradient, gradient);
+  }
+  // The worst of every case.
+  static void TearDownTestSuite() {
+    for (const auto& [name, errors] : worst_)
+      std::printf("  %-18s loss %.1e  logits %.1e  worst gradient %.1e\n", name.c_str(), errors.loss, errors.scores,
+                  errors.gradient);
+    worst_.clear();
   }
 
   PolicyShape shape;
@@ -162,6 +182,12 @@ class TorchEngine : public testing::TestWithParam<Case> {
   Parallel parallel;
   std::unique_ptr<Engine> torch;
   std::vector<float> other_gradient, logits, other_logits;
+
+ private:
+  struct Errors {
+    double loss = 0, scores = 0, gradient = 0;
+  };
+  static inline std::map<std::string, Errors> worst_;  // by the case's name
 };
 
 INSTANTIATE_TEST_SUITE_P(Every, TorchEngine,
@@ -176,6 +202,30 @@ INSTANTIATE_TEST_SUITE_P(Every, TorchEngine,
                          [](const auto& info) { return info.param.name; });
 
 TEST_P(TorchEngine, AgreesOnLossesScoresAndGradients) {
+  const RandomSteps<float> steps = draw_steps(net.parameters, size_, false);
+  compare_steps(steps.batch());
+}
+
+// The networks of both worlds as wide as the paper's, where sums are long.
+class TorchEngineFullWidth : public TorchEngine {
+ protected:
+  void SetUp() override {
+    if (coarse()) GTEST_SKIP() << "every network is wide where products are coarse";
+    TorchEngine::SetUp();
+  }
+};
+
+Case full(const char* name, const char* method, bool features, SfLoss sf_loss = SfLoss::kTemporalDifference) {
+  return {name, method, features, 0, sf_loss, false, true};
+}
+INSTANTIATE_TEST_SUITE_P(Every, TorchEngineFullWidth,
+                         testing::Values(full("full_synpo", "synpo", false), full("full_mtl", "mtl", false),
+                                         full("full_mlp", "mlp", false), full("full_modulenet", "modulenet", false),
+                                         full("full_sf", "sf", false, SfLoss::kCrossEntropy),
+                                         full("full_kitchen", "synpo", true), full("full_kitchen_mlp", "mlp", true)),
+                         [](const auto& info) { return info.param.name; });
+
+TEST_P(TorchEngineFullWidth, AgreesOnLossesScoresAndGradients) {
   const RandomSteps<float> steps = draw_steps(net.parameters, size_, false);
   compare_steps(steps.batch());
 }
