@@ -11,7 +11,7 @@ void Packed<T>::pack(Op op, int k, int n, const T* b, int ldb) {
 
 template <class T>
 void Packed<T>::pack(Parallel& parallel, Op op, int k, int n, const T* b, int ldb) {
-  constexpr size_t kWorthwhile = 1 << 18;
+  constexpr size_t kWorthwhile = 1 << 14;
   if (size_t(k) * n < kWorthwhile) return pack(op, k, n, b, ldb);
   k_ = k;
   n_ = n;

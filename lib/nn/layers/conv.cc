@@ -110,6 +110,23 @@ void Conv<T>::gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const 
 }
 
 template <class T>
+void Conv<T>::make_inputs(int samples, const T* x, T* inputs, size_t rows) const {
+  if (transformed())
+    transform().inputs(tiles(in_, samples, rows), x, inputs);
+  else
+    gather_pixels(samples, x, inputs);
+}
+
+template <class T>
+void Conv<T>::make_dx(int samples, const T* dinputs, size_t rows, T* dx, bool add_dx) const {
+  if (!add_dx) std::fill_n(dx, samples * x_size(), T(0));
+  if (transformed())
+    transform().inputs_adjoint(tiles(in_, samples, rows), dinputs, dx);
+  else
+    gather_pixels_adjoint(samples, dinputs, dx);
+}
+
+template <class T>
 void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, samples * rows_, x, depth_, forward_[0], y, out_);
   for (; samples > unit(); samples -= unit(), x += unit() * x_size(), y += unit() * y_size())
@@ -118,10 +135,7 @@ void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
   const size_t inputs_size = size_t(products_) * rows * depth_;
   T* inputs = scratch.grow(inputs_size + (transformed() ? size_t(products_) * rows * out_ : 0));
   T* outputs = transformed() ? inputs + inputs_size : y;
-  if (transformed())
-    transform().inputs(tiles(in_, samples, rows), x, inputs);
-  else
-    gather_pixels(samples, x, inputs);
+  make_inputs(samples, x, inputs, size_t(rows));
   for (int p = 0; p < products_; ++p)
     gemm(Op::kAsIs, rows, inputs + size_t(p) * rows * depth_, depth_, forward_[p], outputs + size_t(p) * rows * out_,
          out_);
@@ -173,11 +187,16 @@ void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, b
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, outputs, out_, backward_[0], dx, depth_, add_dx);
   for (int p = 0; p < products_; ++p)
     gemm(Op::kAsIs, rows, outputs + p * stride * out_, out_, backward_[p], dinputs + size_t(p) * rows * depth_, depth_);
-  if (!add_dx) std::fill_n(dx, samples * x_size(), T(0));
-  if (transformed())
-    transform().inputs_adjoint(tiles(in_, samples, rows), dinputs, dx);
-  else
-    gather_pixels_adjoint(samples, dinputs, dx);
+  make_dx(samples, dinputs, size_t(rows), dx, add_dx);
+}
+
+// The sum of what the parts of a slab have of a gradient, from value `at` on.
+template <class T>
+void Conv<T>::add_part_gradients(const Slab& slab, int samples, size_t at, size_t count, bool accumulate, T* to) const {
+  Terms<T> parts;
+  for (int part = 0; part < shard_count(samples, unit()); ++part)
+    parts.add(1, slab.gradients.data() + part * dfactors_size() + at);
+  parts.combine(count, to, accumulate);
 }
 
 template <class T>
@@ -185,15 +204,28 @@ void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool acc
   const int blocks = shard_count(depth_, gradient_rows_), p = shard / blocks;
   const Range range = shard_range(depth_, gradient_rows_, shard % blocks);
   const size_t at = (size_t(p) * depth_ + range.begin) * out_;
-  if (keeps_gradients()) {
-    Terms<T> parts;
-    for (int part = 0; part < shard_count(samples, unit()); ++part)
-      parts.add(1, slab.gradients.data() + part * dfactors_size() + at);
-    return parts.combine(size_t(range.size()) * out_, dfactors + at, accumulate);
-  }
+  if (keeps_gradients())
+    return add_part_gradients(slab, samples, at, size_t(range.size()) * out_, accumulate, dfactors + at);
   gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_,
        slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_, slab.outputs.data() + p * slab.rows * out_,
        out_, dfactors + at, out_, accumulate);
+}
+
+template <class T>
+void Conv<T>::stage_pack(int p, Slab& slab, int samples) const {
+  slab.packed[size_t(p)].pack(Op::kAsIs, samples * rows_, out_, slab.outputs.data() + p * slab.rows * out_, out_);
+}
+
+template <class T>
+void Conv<T>::stage_weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const {
+  const int blocks = shard_count(depth_, kFineRows), p = shard / blocks;
+  const Range range = shard_range(depth_, kFineRows, shard % blocks);
+  const size_t at = (size_t(p) * depth_ + range.begin) * out_;
+  if (keeps_gradients())
+    add_part_gradients(slab, samples, at, size_t(range.size()) * out_, accumulate, dfactors + at);
+  else
+    gemm(Op::kTransposed, range.size(), slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_,
+         slab.packed[size_t(p)], dfactors + at, out_, accumulate);
 }
 
 template <class T>
@@ -202,6 +234,81 @@ void Conv<T>::finish_gradient(int tap, const T* dfactors, T* dweight) const {
   Terms<T> terms;
   for (int p = 0; p < products_; ++p) terms.add(taps_[p * kTaps + tap], dfactors + p * plane);
   terms.combine(plane, dweight + tap * plane);
+}
+
+template <class T>
+void Conv<T>::reserve_stages(Slab& slab, int samples, bool backward) const {
+  slab.rows = size_t(samples) * rows_;
+  slab.inputs.grow(products_ * slab.rows * depth_);
+  if (backward || transformed()) slab.outputs.grow(products_ * slab.rows * out_);
+  if (!backward) return;
+  slab.dinputs.grow(products_ * slab.rows * depth_);
+  slab.packed.resize(std::max(slab.packed.size(), size_t(products_)));
+  if (keeps_gradients()) slab.gradients.grow(shard_count(samples, unit()) * dfactors_size());
+}
+
+template <class T>
+void Conv<T>::stage_inputs(Slab& slab, Range part, const T* x) const {
+  if (form_ == Form::kPlain) return;
+  make_inputs(part.size(), x, slab.inputs.data() + size_t(part.begin) * rows_ * depth_, slab.rows);
+}
+
+template <class T>
+void Conv<T>::stage_product(int shard, Slab& slab, int samples, const T* x, T* y) const {
+  const int blocks = shard_count(samples * rows_, kStageRows), p = shard / blocks;
+  const Range rows = shard_range(samples * rows_, kStageRows, shard % blocks);
+  const size_t first = p * slab.rows + rows.begin;
+  const T* inputs = form_ == Form::kPlain ? x : slab.inputs.data();
+  T* outputs = transformed() ? slab.outputs.data() : y;
+  gemm(Op::kAsIs, rows.size(), inputs + first * depth_, depth_, forward_[p], outputs + first * out_, out_);
+}
+
+template <class T>
+void Conv<T>::stage_outputs(const Slab& slab, Range part, T* y) const {
+  if (transformed())
+    transform().outputs(tiles(out_, part.size(), slab.rows), slab.outputs.data() + size_t(part.begin) * rows_ * out_,
+                        y + part.begin * y_size());
+}
+
+template <class T>
+void Conv<T>::stage_operands(Slab& slab, Range part, const T* x, const T* dy) const {
+  const size_t first = size_t(part.begin) * rows_;
+  T* outputs = slab.outputs.data() + first * out_;
+  make_inputs(part.size(), x, slab.inputs.data() + first * depth_, slab.rows);
+  if (transformed())
+    transform().outputs_adjoint(tiles(out_, part.size(), slab.rows), dy, outputs);
+  else
+    std::copy_n(dy, part.size() * y_size(), outputs);
+}
+
+template <class T>
+void Conv<T>::stage_part_gradient(int shard, Slab& slab, int samples) const {
+  const int part = shard / products_, p = shard % products_;
+  const Range range = shard_range(samples, unit(), part);
+  const size_t first = p * slab.rows + size_t(range.begin) * rows_;
+  gemm(Op::kTransposed, Op::kAsIs, depth_, out_, range.size() * rows_, slab.inputs.data() + first * depth_, depth_,
+       slab.outputs.data() + first * out_, out_,
+       slab.gradients.data() + part * dfactors_size() + size_t(p) * depth_ * out_, out_);
+}
+
+template <class T>
+void Conv<T>::stage_dproduct(int shard, Slab& slab, int samples) const {
+  if (form_ == Form::kPlain) return;  // stage_dx() makes and adds it at once
+  const int blocks = shard_count(samples * rows_, kStageRows), p = shard / blocks;
+  const Range rows = shard_range(samples * rows_, kStageRows, shard % blocks);
+  const size_t first = p * slab.rows + rows.begin;
+  gemm(Op::kAsIs, rows.size(), slab.outputs.data() + first * out_, out_, backward_[p],
+       slab.dinputs.data() + first * depth_, depth_);
+}
+
+template <class T>
+void Conv<T>::stage_dx(const Slab& slab, Range part, T* dx, bool add_dx) const {
+  const size_t first = size_t(part.begin) * rows_;
+  dx += part.begin * x_size();
+  if (form_ == Form::kPlain)
+    gemm(Op::kAsIs, part.size() * rows_, slab.outputs.data() + first * out_, out_, backward_[0], dx, depth_, add_dx);
+  else
+    make_dx(part.size(), slab.dinputs.data() + first * depth_, slab.rows, dx, add_dx);
 }
 
 template class Conv<float>;

@@ -48,8 +48,9 @@ class Conv {
   // weight where those are small, else inputs and outputs.
   static constexpr int kSlab = 512;
   struct Slab {
-    Buffer<T> inputs, outputs, gradients;
-    size_t rows = 0;  // from one product to the next
+    Buffer<T> inputs, outputs, gradients, dinputs;
+    size_t rows = 0;                // from one product to the next
+    std::vector<Packed<T>> packed;  // outputs of each product, for stages
   };
   void reserve(Slab& slab, int samples) const;
   void backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const;
@@ -64,8 +65,39 @@ class Conv {
   static constexpr int kTaps = 9;
   void finish_gradient(int tap, const T* dfactors, T* dweight) const;
 
+  // The same in stages, for more threads than there are parts of unit() samples: every stage is done in shards of its
+  // own, the next one when all of them are done. They come to the bits of forward() and backward(). Inputs and operands
+  // are made of a part's own x and dy; elsewhere x, y and dx are all `samples` of a batch or a slab.
+  void reserve_stages(Slab& slab, int samples, bool backward) const;
+  int product_shards(int samples) const { return products_ * shard_count(samples * rows_, kStageRows); }
+  // Forward: inputs, products, outputs.
+  void stage_inputs(Slab& slab, Range part, const T* x) const;
+  void stage_product(int shard, Slab& slab, int samples, const T* x, T* y) const;
+  void stage_outputs(const Slab& slab, Range part, T* y) const;
+  // Backward: operands; then gradients of parts (as many shards as there are, which may be none) and, where dx is
+  // wanted, products of the gradient; at last dx. weight_gradient() comes after the gradients of parts.
+  void stage_operands(Slab& slab, Range part, const T* x, const T* dy) const;
+  // weight_gradient() in two stages: what is packed once, and shards of fewer rows; none of it where parts have
+  // gradients, whose sum weight_gradient() makes.
+  int pack_shards() const { return keeps_gradients() ? 0 : products_; }
+  void stage_pack(int p, Slab& slab, int samples) const;
+  int fine_gradient_shards() const { return products_ * shard_count(depth_, kFineRows); }
+  void stage_weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
+  int part_gradient_shards(int samples) const {
+    return keeps_gradients() ? products_ * shard_count(samples, unit()) : 0;
+  }
+  void stage_part_gradient(int shard, Slab& slab, int samples) const;
+  void stage_dproduct(int shard, Slab& slab, int samples) const;
+  void stage_dx(const Slab& slab, Range part, T* dx, bool add_dx) const;
+
  private:
   enum class Form { kPlain, kGathered, kWinograd, kToeplitz };
+  static constexpr int kFineRows = 32;   // of the weight's gradient, in a shard of a stage
+  static constexpr int kStageRows = 64;  // of a product, in a shard of a stage
+  // Samples of a part as the products have them, `rows` from one product to the next.
+  void make_inputs(int samples, const T* x, T* inputs, size_t rows) const;
+  void add_part_gradients(const Slab& slab, int samples, size_t at, size_t count, bool accumulate, T* to) const;
+  void make_dx(int samples, const T* dinputs, size_t rows, T* dx, bool add_dx) const;
   template <class Body>
   void for_taps(Body&& body) const;
   void gather_pixels(int samples, const T* x, T* inputs) const;

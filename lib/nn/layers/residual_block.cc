@@ -9,6 +9,14 @@ namespace synpo {
 namespace {
 
 constexpr int kUnit = 32;  // samples of a shard where no convolution asks for another number
+constexpr int kFine = 8;   // of a shard of a stage that has no product
+
+// body(samples, thread) for all of [0, samples) in fine shards.
+template <class Body>
+void for_fine_parts(Parallel& parallel, int samples, Body&& body) {
+  parallel.run(shard_count(samples, kFine),
+               [&](int shard, int thread) { body(shard_range(samples, kFine, shard), thread); });
+}
 
 }  // namespace
 
@@ -93,6 +101,7 @@ void ResidualBlock<T>::forward(Parallel& parallel, ResidualWorkspace<T>& work, i
   y_.grow(n * y_size());
   const int unit = inner().unit(), shards = shard_count(n, unit);
   for (size_t i = 0; i < places(); ++i) norms_[i].begin(shards);
+  if (staged(parallel, n)) return forward_staged(parallel, work, x, parameters, statistics, frozen);
   parallel.run(shards, [&](int shard, int thread) {
     const Range samples = shard_range(n, unit, shard);
     x.make(samples);
@@ -109,6 +118,60 @@ void ResidualBlock<T>::forward(Parallel& parallel, ResidualWorkspace<T>& work, i
                            norms_[kFirst].scale(), norms_[kFirst].shift(), y1);
     convolve(kSecond, work, y1, samples, shard, thread, statistics, frozen);
   });
+  finish_norm(kSecond, parameters, statistics, frozen);
+}
+
+// Products and outputs of convolutions whose inputs are made (a plain one's are x), then the sums of normalisation.
+template <class T>
+void ResidualBlock<T>::run_stages(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs,
+                                  const T* x, const T* statistics, bool frozen) {
+  int products = 0;
+  for (const Place i : convs) products += convs_[i].product_shards(n_);
+  parallel.run(products, [&](int shard, int) {
+    for (const Place i : convs) {
+      const int own = convs_[i].product_shards(n_);
+      if (shard < own) return convs_[i].stage_product(shard, work.slabs[i], n_, x, z_[i].data());
+      shard -= own;
+    }
+  });
+  for_fine_parts(parallel, n_, [&](Range part, int) {
+    for (const Place i : convs) convs_[i].stage_outputs(work.slabs[i], part, z_[i].data());
+  });
+  if (frozen) return;
+  const int unit = inner().unit(), shards = shard_count(n_, unit);
+  parallel.run(shards * int(convs.size()), [&](int number, int) {
+    const Place i = convs.begin()[number / shards];
+    const int shard = number % shards;
+    const Range samples = shard_range(n_, unit, shard);
+    norms_[i].add_rows(shard, z_[i].data() + samples.begin * y_size(), size_t(samples.size()) * pixels(),
+                       statistics + norm_places_[i].mean);
+  });
+}
+
+template <class T>
+void ResidualBlock<T>::forward_staged(Parallel& parallel, ResidualWorkspace<T>& work, const LazyPictures<T>& x,
+                                      const T* parameters, T* statistics, bool frozen) {
+  for (size_t i = 0; i < places(); ++i) convs_[i].reserve_stages(work.slabs[i], n_, false);
+  for_fine_parts(parallel, n_, [&](Range part, int) {
+    x.make(part);
+    const T* from = x.values + part.begin * x_size();
+    convs_[kFirst].stage_inputs(work.slabs[kFirst], part, from);
+    if (has_shortcut()) convs_[kShortcut].stage_inputs(work.slabs[kShortcut], part, from);
+  });
+  if (has_shortcut())
+    run_stages(parallel, work, {kFirst, kShortcut}, x.values, statistics, frozen);
+  else
+    run_stages(parallel, work, {kFirst}, x.values, statistics, frozen);
+  finish_norm(kFirst, parameters, statistics, frozen);
+  if (has_shortcut()) finish_norm(kShortcut, parameters, statistics, frozen);
+  T* y1 = work.dy1.grow(n_ * y_size());
+  for_fine_parts(parallel, n_, [&](Range part, int) {
+    const size_t at = part.begin * y_size();
+    kernels<T>().norm_relu(size_t(part.size()) * pixels(), out(), z_[kFirst].data() + at, norms_[kFirst].scale(),
+                           norms_[kFirst].shift(), y1 + at);
+    convs_[kSecond].stage_inputs(work.slabs[kSecond], part, y1 + at);
+  });
+  run_stages(parallel, work, {kSecond}, y1, statistics, frozen);
   finish_norm(kSecond, parameters, statistics, frozen);
 }
 
@@ -145,14 +208,104 @@ void ResidualBlock<T>::finish_norm_backward(Place i, const T* parameters, T* gra
 template <class T>
 void ResidualBlock<T>::weight_gradients(Parallel& parallel, ResidualWorkspace<T>& work,
                                         std::initializer_list<Place> convs, Range samples, T* gradient) {
-  std::vector<std::pair<Place, int>> shards;
+  const bool in_stages = staged(parallel, samples.size());
+  const auto run = [&](auto&& count, auto&& body) {
+    std::vector<std::pair<Place, int>> shards;
+    for (const Place i : convs)
+      for (int shard = 0; shard < count(convs_[i]); ++shard) shards.emplace_back(i, shard);
+    parallel.run(int(shards.size()),
+                 [&](int number, int) { body(shards[size_t(number)].first, shards[size_t(number)].second); });
+  };
+  if (in_stages)
+    run([](const Conv<T>& conv) { return conv.pack_shards(); },
+        [&](Place i, int p) { convs_[i].stage_pack(p, work.slabs[i], samples.size()); });
+  run([&](const Conv<T>& conv) { return in_stages ? conv.fine_gradient_shards() : conv.gradient_shards(); },
+      [&](Place i, int shard) {
+        const Conv<T>& conv = convs_[i];
+        T* to = conv.transformed() ? dfactors_[i].data() : gradient + weights_[i];
+        if (in_stages)
+          conv.stage_weight_gradient(shard, work.slabs[i], samples.size(), samples.begin > 0, to);
+        else
+          conv.weight_gradient(shard, work.slabs[i], samples.size(), samples.begin > 0, to);
+      });
+}
+
+// What comes after the operands of a slab's convolutions: gradients of parts, and products for dx.
+template <class T>
+void ResidualBlock<T>::stage_gradients(Parallel& parallel, ResidualWorkspace<T>& work,
+                                       std::initializer_list<Place> convs, int samples, bool dx) {
+  int shards = 0;
   for (const Place i : convs)
-    for (int shard = 0; shard < convs_[i].gradient_shards(); ++shard) shards.emplace_back(i, shard);
-  parallel.run(int(shards.size()), [&](int number, int) {
-    const auto [i, shard] = shards[size_t(number)];
-    const Conv<T>& conv = convs_[i];
-    T* to = conv.transformed() ? dfactors_[i].data() : gradient + weights_[i];
-    conv.weight_gradient(shard, work.slabs[i], samples.size(), samples.begin > 0, to);
+    shards += convs_[i].part_gradient_shards(samples) + (dx ? convs_[i].product_shards(samples) : 0);
+  parallel.run(shards, [&](int shard, int) {
+    for (const Place i : convs) {
+      const Conv<T>& conv = convs_[i];
+      const int parts = conv.part_gradient_shards(samples), products = dx ? conv.product_shards(samples) : 0;
+      if (shard < parts) return conv.stage_part_gradient(shard, work.slabs[i], samples);
+      if (shard < parts + products) return conv.stage_dproduct(shard - parts, work.slabs[i], samples);
+      shard -= parts + products;
+    }
+  });
+}
+
+template <class T>
+void ResidualBlock<T>::backward_second_staged(Parallel& parallel, ResidualWorkspace<T>& work, Range slab) {
+  const Conv<T>& conv = convs_[kSecond];
+  const size_t size = y_size(), from = slab.begin * size;
+  const int samples = slab.size(), unit = conv.unit();
+  conv.reserve_stages(work.slabs[kSecond], samples, true);
+  for_fine_parts(parallel, samples, [&](Range part, int thread) {
+    const size_t at = from + part.begin * size, count = part.size() * pixels();
+    auto& scratch = work.scratch[size_t(thread)];
+    T* dz = scratch.picture.grow(part.size() * size);
+    T* y1 = scratch.second.grow(part.size() * size);
+    norms_[kSecond].apply_backward(work.d.data() + at, z_[kSecond].data() + at, dz, count, false);
+    kernels<T>().norm_relu(count, out(), z_[kFirst].data() + at, norms_[kFirst].scale(), norms_[kFirst].shift(), y1);
+    conv.stage_operands(work.slabs[kSecond], part, y1, dz);
+  });
+  stage_gradients(parallel, work, {kSecond}, samples, true);
+  for_fine_parts(parallel, samples,
+                 [&](Range part, int) { conv.stage_dx(work.slabs[kSecond], part, work.dy1.data() + from, false); });
+  parallel.run(shard_count(samples, unit), [&](int shard, int) {
+    const Range part = shard_range(samples, unit, shard);
+    const size_t at = from + part.begin * size;
+    norms_[kFirst].add_backward_rows(slab.begin / unit + shard, work.dy1.data() + at, z_[kFirst].data() + at,
+                                     part.size() * pixels(), true);
+  });
+}
+
+template <class T>
+void ResidualBlock<T>::backward_first_staged(Parallel& parallel, ResidualWorkspace<T>& work, ResidualBlock* before,
+                                             Range slab, T* dx) {
+  const bool own = has_shortcut();
+  const size_t size = y_size(), from = slab.begin * size;
+  const int samples = slab.size(), unit = inner().unit();
+  T* slab_dx = dx ? dx + slab.begin * x_size() : nullptr;
+  for (const Place i : {kFirst, kShortcut})
+    if (i == kFirst || own) convs_[i].reserve_stages(work.slabs[i], samples, true);
+  for_fine_parts(parallel, samples, [&](Range part, int thread) {
+    const size_t at = from + part.begin * size, count = part.size() * pixels();
+    const T* x = x_ + (slab.begin + part.begin) * x_size();
+    T* dz = work.scratch[size_t(thread)].picture.grow(part.size() * size);
+    norms_[kFirst].apply_backward(work.dy1.data() + at, z_[kFirst].data() + at, dz, count, true);
+    convs_[kFirst].stage_operands(work.slabs[kFirst], part, x, dz);
+    if (!own) return;
+    norms_[kShortcut].apply_backward(work.d.data() + at, z_[kShortcut].data() + at, dz, count, false);
+    convs_[kShortcut].stage_operands(work.slabs[kShortcut], part, x, dz);
+  });
+  if (own)
+    stage_gradients(parallel, work, {kFirst, kShortcut}, samples, dx);
+  else
+    stage_gradients(parallel, work, {kFirst}, samples, dx);
+  if (!dx) return;
+  for_fine_parts(parallel, samples, [&](Range part, int) {
+    convs_[kFirst].stage_dx(work.slabs[kFirst], part, slab_dx, !own);
+    if (own) convs_[kShortcut].stage_dx(work.slabs[kShortcut], part, slab_dx, true);
+  });
+  if (!before) return;
+  parallel.run(shard_count(samples, unit), [&](int shard, int) {
+    const Range part = shard_range(samples, unit, shard);
+    before->mask_gradient(slab.begin / unit + shard, {slab.begin + part.begin, slab.begin + part.end}, dx);
   });
 }
 
@@ -167,6 +320,11 @@ void ResidualBlock<T>::backward_second(Parallel& parallel, ResidualWorkspace<T>&
   conv.reserve(work.slabs[kSecond], Conv<T>::kSlab);
   for (int begin = 0; begin < n_; begin += Conv<T>::kSlab) {
     const Range slab = {begin, std::min(n_, begin + Conv<T>::kSlab)};
+    if (staged(parallel, slab.size())) {
+      backward_second_staged(parallel, work, slab);
+      weight_gradients(parallel, work, {kSecond}, slab, gradient);
+      continue;
+    }
     parallel.run(shard_count(slab.size(), unit), [&](int shard, int thread) {
       const Range part = shard_range(slab.size(), unit, shard);
       const size_t at = (begin + part.begin) * size, count = part.size() * pixels();
@@ -200,7 +358,9 @@ void ResidualBlock<T>::backward_first(Parallel& parallel, ResidualWorkspace<T>& 
   T* dx = !before ? nullptr : own ? work.dx.data() : work.d.data();
   for (int begin = 0; begin < n_; begin += Conv<T>::kSlab) {
     const Range slab = {begin, std::min(n_, begin + Conv<T>::kSlab)};
-    parallel.run(shard_count(slab.size(), unit), [&](int shard, int thread) {
+    const bool in_stages = staged(parallel, slab.size());
+    if (in_stages) backward_first_staged(parallel, work, before, slab, dx);
+    parallel.run(in_stages ? 0 : shard_count(slab.size(), unit), [&](int shard, int thread) {
       const Range part = shard_range(slab.size(), unit, shard), samples = {begin + part.begin, begin + part.end};
       const size_t at = samples.begin * size, count = part.size() * pixels();
       auto& scratch = work.scratch[size_t(thread)];

@@ -4,8 +4,12 @@
 //
 // Blocks are fused where they meet: a block's last pass over its output (normalisation, addition, ReLU) is made as the
 // next block reads it, sample by sample while it is in the cache, and so is the mask of its last ReLU on the way back.
+//
+// Where there are more threads than that keeps busy, a convolution is done in stages over the whole batch (conv.h):
+// slower for few threads, since everything passes through memory, and to the same bits, since no sum is cut anew.
 #pragma once
 #include <functional>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
@@ -102,6 +106,18 @@ class ResidualBlock {
   void finish_norm_backward(Place i, const T* parameters, T* gradient);
   void weight_gradients(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs,
                         Range samples, T* gradient);
+  // Whether `samples` are too few for the threads, a unit each.
+  bool staged(const Parallel& parallel, int samples) const {
+    return parallel.threads() > 2 && shard_count(samples, inner().unit()) < 2 * parallel.threads();
+  }
+  void run_stages(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs, const T* x,
+                  const T* statistics, bool frozen);
+  void stage_gradients(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs, int samples,
+                       bool dx);
+  void forward_staged(Parallel& parallel, ResidualWorkspace<T>& work, const LazyPictures<T>& x, const T* parameters,
+                      T* statistics, bool frozen);
+  void backward_second_staged(Parallel& parallel, ResidualWorkspace<T>& work, Range slab);
+  void backward_first_staged(Parallel& parallel, ResidualWorkspace<T>& work, ResidualBlock* before, Range slab, T* dx);
   void backward_second(Parallel& parallel, ResidualWorkspace<T>& work, const T* parameters, T* gradient);
   void backward_first(Parallel& parallel, ResidualWorkspace<T>& work, ResidualBlock* before, T* gradient);
 

@@ -38,7 +38,11 @@ template <class T>
 Losses EncodedPolicy<T>::step(Parallel& parallel, const StepBatch<T>& batch, const StepOptions& options,
                               const T* parameters, T* statistics, T* gradient, T* logits) {
   const size_t size = size_t(batch.size) * shape_.feature;
-  std::fill(gradient + head_begin_, gradient + this->parameters_.total(), T(0));
+  constexpr size_t kPart = 1 << 16;
+  const size_t head = this->parameters_.total() - head_begin_;
+  parallel.run(int((head + kPart - 1) / kPart), [&](int shard, int) {
+    std::fill_n(gradient + head_begin_ + shard * kPart, std::min(kPart, head - shard * kPart), T(0));
+  });
   T* dpsi = dpsi_.grow(size);
   std::fill_n(dpsi, size, T(0));
   if (batch.psi)

@@ -164,8 +164,11 @@ void SynPo<T>::disentangle(const HeadStep<T>& step, Losses& losses) {
   T* dsorted = dpsi_sorted_.grow(size_t(n) * d);
   T* x = x_.grow(size_t(n) * basis);
   T* dx = dx_.grow(size_t(n) * basis);
-  for (int j = 0; j < n; ++j) std::copy_n(psi + size_t(order[j]) * d, d, sorted + size_t(j) * d);
-  std::fill_n(dx, size_t(n) * basis, T(0));
+  parallel.run(shard_count(n, kRows), [&](int shard, int) {
+    const Range rows = shard_range(n, kRows, shard);
+    for (int j = rows.begin; j < rows.end; ++j) std::copy_n(psi + size_t(order[j]) * d, d, sorted + size_t(j) * d);
+    std::fill_n(dx + size_t(rows.begin) * basis, size_t(rows.size()) * basis, T(0));
+  });
   form_.use_actions(parallel, by_label_.keys, parameters);
   // Shards within one label each.
   struct Part {

@@ -87,6 +87,29 @@ TEST(SynPo, ANormalisedInputIsOtherWeightsAndShifts) {
             1e-10);
 }
 
+// Where threads are many, convolutions are done in stages: batches of less than a part, of some, and of more than a
+// slab.
+TEST(SynPo, ManyThreadsGiveTheSameBits) {
+  for (const int size : {5, 150, 600}) {
+    const PolicyShape shape = size == 150 ? tiny_shape(true) : paper_shape();
+    const RandomSteps<float> steps(size, shape, 4);
+    StepBatch<float> batch = steps.batch();
+    for (const bool frozen : {false, true}) {
+      batch.frozen_statistics = frozen;
+      Network<float> one(shape), many(shape);
+      for (Network<float>* net : {&one, &many}) {
+        net->initialise();
+        net->shake();
+        Parallel parallel(net == &one ? 1 : 16);
+        net->step(parallel, batch, {{0.01, 0.1, 1}});
+      }
+      EXPECT_EQ(one.logits, many.logits) << size;
+      EXPECT_EQ(one.gradient, many.gradient) << size;
+      EXPECT_EQ(one.statistics, many.statistics) << size;
+    }
+  }
+}
+
 TEST(SynPo, StartsAsToldByTheSeed) {
   const PolicyShape shape = tiny_shape(false);
   Network<float> a(shape), b(shape), other(shape), wide(shape);
