@@ -160,9 +160,8 @@ Inputs Learner::inputs(const Exchange& exchange, int64_t n, bool psi) const {
   for (int i = 0; i < kInts; ++i) *whole[i] = ints[i];
   int64_t at = kNumbers;
   const auto take = [&](int64_t width) {
-    const torch::Tensor part = exchange.floats.narrow(0, at, n * width);
     at += n * width;
-    return part;
+    return exchange.floats.narrow(0, at - n * width, n * width);
   };
   in.reward = take(1);
   in.planner_q = take(sizes_.actions).view({n, -1});

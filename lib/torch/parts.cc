@@ -9,13 +9,14 @@ namespace {
 
 class TakeRows : public torch::autograd::Function<TakeRows> {
  public:
-  static torch::Tensor forward(torch::autograd::AutogradContext* context, torch::Tensor table, torch::Tensor numbers) {
+  static torch::Tensor forward(torch::autograd::AutogradContext* context, const torch::Tensor& table,
+                               const torch::Tensor& numbers) {
     context->save_for_backward({numbers});
     context->saved_data["rows"] = table.size(0);
     return table.index_select(0, numbers);
   }
   static torch::autograd::variable_list backward(torch::autograd::AutogradContext* context,
-                                                 torch::autograd::variable_list gradients) {
+                                                 const torch::autograd::variable_list& gradients) {
     const torch::Tensor numbers = context->get_saved_variables()[0];
     return {indicator(numbers, context->saved_data["rows"].toInt()).t().mm(gradients[0]), torch::Tensor()};
   }

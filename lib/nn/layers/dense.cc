@@ -1,13 +1,19 @@
 #include "nn/layers/dense.h"
 
+#include <algorithm>
+
 #include "nn/gemm.h"
 
 namespace synpo {
 namespace {
 
 // Of the rows of a product, how many are a shard. The other factor is read anew for each: where it fills a processor's
-// own cache, shards are larger.
-int shard_rows(int rows, size_t other_factor) { return rows < 512 || other_factor < 1 << 19 ? 64 : 128; }
+// own cache, shards are larger; where threads are many, smaller. No row depends on the others.
+int shard_rows(const Parallel& parallel, int rows, size_t other_factor) {
+  const int unit = rows < 512 || other_factor < 1 << 19 ? 64 : 128, wanted = 2 * parallel.threads();
+  if (parallel.threads() <= 2 || shard_count(rows, unit) >= wanted) return unit;
+  return std::clamp((rows + wanted - 1) / wanted, 8, unit);
+}
 
 // Memory to pack a matrix into, for all threads; nothing of it outlives the next call.
 template <class T>
@@ -22,7 +28,7 @@ const Packed<T>& packed(Parallel& parallel, Op op, int k, int n, const T* b, int
 template <class T>
 void dense_forward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* b, bool relu, T* y) {
   const Packed<T>& weight = packed(parallel, Op::kAsIs, in, out, w, out);
-  const int unit = shard_rows(rows, size_t(in) * out);
+  const int unit = shard_rows(parallel, rows, size_t(in) * out);
   parallel.run(shard_count(rows, unit), [&](int shard, int) {
     const Range range = shard_range(rows, unit, shard);
     T* to = y + size_t(range.begin) * out;
@@ -35,7 +41,7 @@ template <class T>
 void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, const T* w, const T* relu_y, T* dy,
                     T* dx, bool add_dx, T* dw, T* db) {
   const Packed<T>* weight = dx ? &packed(parallel, Op::kTransposed, out, in, w, out) : nullptr;
-  const int unit = shard_rows(rows, size_t(in) * out);
+  const int unit = shard_rows(parallel, rows, size_t(in) * out);
   if (dx || relu_y)
     parallel.run(shard_count(rows, unit), [&](int shard, int) {
       const Range range = shard_range(rows, unit, shard);
@@ -44,7 +50,7 @@ void dense_backward(Parallel& parallel, int rows, int in, int out, const T* x, c
       if (dx) gemm(Op::kAsIs, range.size(), d, out, *weight, dx + size_t(range.begin) * in, in, add_dx);
     });
   const Packed<T>& right = packed(parallel, Op::kAsIs, rows, out, dy, out);
-  const int block = shard_rows(in, size_t(rows) * out);
+  const int block = shard_rows(parallel, in, size_t(rows) * out);
   parallel.run(shard_count(in, block) + 1, [&](int shard, int) {
     if (shard == 0) {
       if (db)

@@ -86,7 +86,7 @@ TEST(Dense, ALargeLayersBitsAreThoseOfItsProducts) {
     const std::vector<float> want_y = product(Op::kAsIs, Op::kAsIs, kRows, kOut, kIn, x, kIn, w, kOut, 0);
     const std::vector<float> want_dx = product(Op::kAsIs, Op::kTransposed, kRows, kIn, kOut, dy, kOut, w, kOut, 2);
     const std::vector<float> want_dw = product(Op::kTransposed, Op::kAsIs, kIn, kOut, kRows, x, kIn, dy, kOut, 3);
-    for (const int threads : {1, 2}) {
+    for (const int threads : {1, 2, 16}) {
       Parallel parallel(threads);
       std::vector<float> y(kRows * kOut), d = dy, dx(kRows * kIn, 2), dw(kIn * kOut, 3);
       dense_forward<float>(parallel, kRows, kIn, kOut, x.data(), w.data(), nullptr, false, y.data());
