@@ -4,10 +4,14 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <cstdint>
+#include <ctime>
 #include <exception>
 #include <mutex>
 #include <thread>
 #include <vector>
+
+#include "base/clock.h"
 
 namespace synpo {
 namespace {
@@ -19,6 +23,13 @@ inline void relax() {
 #elif defined(__aarch64__)
   asm volatile("yield");
 #endif
+}
+
+// Processor time of this thread.
+int64_t thread_ns() {
+  timespec time;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return int64_t(time.tv_sec) * 1000000000 + time.tv_nsec;
 }
 
 // While it lives, this thread takes numbers too small for a normal float as zero. Weights that decay and moments that
@@ -112,6 +123,18 @@ Parallel::~Parallel() = default;
 int Parallel::threads() const { return int(pool_->workers.size()) + 1; }
 
 void Parallel::run(int shards, const std::function<void(int, int)>& work) {
+  if (!watcher_) return run_unwatched(shards, work);
+  std::atomic<int64_t> work_ns{0};
+  const TimePoint start = now();
+  run_unwatched(shards, [&](int shard, int thread) {
+    const int64_t begin = thread_ns();
+    work(shard, thread);
+    work_ns += thread_ns() - begin;
+  });
+  watcher_({shards, seconds_since(start), double(work_ns) * 1e-9});
+}
+
+void Parallel::run_unwatched(int shards, const std::function<void(int, int)>& work) {
   Pool& pool = *pool_;
   if (pool.workers.empty()) {
     [[maybe_unused]] const FlushDenormals flush;

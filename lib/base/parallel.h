@@ -2,6 +2,7 @@
 #pragma once
 #include <functional>
 #include <memory>
+#include <utility>
 
 namespace synpo {
 
@@ -15,7 +16,17 @@ class Parallel {
   // Returns when all are done. An exception is passed on. Numbers too small for a normal float count as zero in `work`.
   void run(int shards, const std::function<void(int shard, int thread)>& work);
 
+  // For measurements: called after each run() with what was done.
+  struct Region {
+    int shards;
+    double elapsed_s, work_s;  // from its begin to its end; of all threads' processor time in `work`
+  };
+  void watch(std::function<void(const Region&)> watcher) { watcher_ = std::move(watcher); }
+
  private:
+  void run_unwatched(int shards, const std::function<void(int shard, int thread)>& work);
+
+  std::function<void(const Region&)> watcher_;
   struct Pool;
   std::unique_ptr<Pool> pool_;
 };

@@ -6,6 +6,7 @@
 //   synpo-bench kitchen B THREADS [DEVICE [PRECISION]]
 //                                        the training step of the kitchens' network, that of Table 3, on random
 //                                        features
+//   synpo-bench shards B THREADS         how a training step is cut for so many threads, whatever this machine has
 //   synpo-bench ppo THREADS [DEVICE [PRECISION]]
 //                                        steps of the worlds per second of PPO, with all that is learned from them
 //
@@ -28,6 +29,7 @@
 #include "base/clock.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "engine/cpu_engine.h"
 #include "engine/device.h"
 #include "learn/ppo/ppo.h"
 #include "learn/recipe.h"
@@ -184,6 +186,49 @@ double ppo_rate(int threads, const DeviceOptions& device) {
 }
 
 void row(const char* name, double value, const char* unit) { std::printf("%s\t%.6g\t%s\n", name, value, unit); }
+
+// How a training step at batch n is cut for so many threads, wherever it runs: the part of its work that is done in
+// regions of fewer than 8, 16, 32 and 64 shards, how many regions a step has, and the time between them as part of a
+// step on one thread.
+int shard_rows(int n, int threads) {
+  const std::unique_ptr<World> world = open_world("gridworld");
+  const ImitationOptions options = recipe(kDefaultRecipe);
+  const PolicyShape shape = options.shape(*world);
+  const std::unique_ptr<Policy<float>> policy = make_policy("synpo", shape);
+  const size_t count = policy->parameters().total();
+  Buffer<float> parameters(count), statistics(policy->statistics().total()), m(count), v(count),
+      logits(size_t(n) * shape.actions);
+  policy->initialise({}, parameters.data(), statistics.data());
+  m.zero();
+  v.zero();
+  const RandomBatch data(n, shape, policy->observation_size());
+  CpuEngine engine(*policy);
+  engine.take({parameters.data(), statistics.data(), m.data(), v.data()});
+  int64_t step = 0;
+  const auto measure = [&](int with, std::vector<Parallel::Region>& regions) {
+    Parallel parallel(with);
+    for (int i = 0; i < 2; ++i) engine.update(parallel, data.batch, options.step(), {{}, ++step}, logits.data());
+    parallel.watch([&](const Parallel::Region& region) { regions.push_back(region); });
+    constexpr int kSteps = 8;
+    const TimePoint start = now();
+    for (int i = 0; i < kSteps; ++i) engine.update(parallel, data.batch, options.step(), {{}, ++step}, logits.data());
+    return seconds_since(start) / kSteps;
+  };
+  std::vector<Parallel::Region> one, many;
+  double inside_s = 0, work_s = 0;
+  const double step_s = measure(1, one);
+  for (const Parallel::Region& region : one) inside_s += region.elapsed_s / 8;
+  measure(threads, many);
+  for (const Parallel::Region& region : many) work_s += region.work_s;
+  row("between_regions_on_one_thread", 100 * (1 - inside_s / step_s), "%");
+  row("regions_of_a_step", double(many.size()) / 8, "");
+  for (const int fewer : {8, 16, 32, 64}) {
+    double part_s = 0;
+    for (const Parallel::Region& region : many) part_s += region.shards < fewer ? region.work_s : 0;
+    row(("work_in_fewer_than_" + std::to_string(fewer) + "_shards").c_str(), 100 * part_s / work_s, "%");
+  }
+  return 0;
+}
 
 // Steps of a world with the network's input made at every one, on one core.
 double world_rate(const std::string& name) {
@@ -409,6 +454,7 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
+  if (argc == 4 && what == "shards") return shard_rows(std::atoi(argv[2]), std::atoi(argv[3]));
   if (argc >= 3 && argc <= 5 && what == "ppo") {
     std::printf("%.0f\n", ppo_rate(std::atoi(argv[2]), device_at(3)));
     return 0;
@@ -420,7 +466,7 @@ int main(int argc, char** argv) {
   }
   std::fputs(
       "usage: synpo-bench rows | methods | train|forward|kitchen BATCH[,BATCH...] THREADS [DEVICE [PRECISION]] |\n"
-      "       ppo THREADS [DEVICE [PRECISION]]\n",
+      "       shards BATCH THREADS | ppo THREADS [DEVICE [PRECISION]]\n",
       stderr);
   return 64;
 }

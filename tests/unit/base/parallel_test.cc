@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include <array>
 #include <atomic>
 
@@ -77,6 +79,22 @@ TEST(Parallel, ShardsCoverTheRange) {
       next = range.end;
     }
     EXPECT_EQ(next, n);
+  }
+}
+
+TEST(Parallel, AWatcherSeesEveryRegion) {
+  for (const int threads : {1, 3}) {
+    Parallel parallel(threads);
+    std::vector<int> shards;
+    parallel.watch([&](const Parallel::Region& region) {
+      shards.push_back(region.shards);
+      EXPECT_GT(region.elapsed_s, 0);
+      EXPECT_GE(region.work_s, 0);
+    });
+    std::atomic<int> done{0};
+    for (const int count : {5, 0, 7}) parallel.run(count, [&](int, int) { ++done; });
+    EXPECT_EQ(done, 12);
+    EXPECT_EQ(shards, (std::vector<int>{5, 0, 7}));
   }
 }
 
