@@ -61,7 +61,8 @@ template <class... Args>
 // input that is shown.
 std::string printable(std::string_view text, size_t limit = std::string_view::npos);
 
-// `text` between single quotes, cut at 60 bytes, made printable().
+// `text` between single quotes, cut at 60 bytes, made printable(), and with what shows as nothing or as another kind of
+// blank written as \xNN too: found and expected never look alike.
 // For naming foreign input in a message.
 std::string quoted(const std::string& text);
 
