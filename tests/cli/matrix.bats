@@ -230,6 +230,20 @@ wide_one|line 1: found 1000000 columns, expected at most 1000
 END
 }
 
+@test "names that turn the direction are shown by their bytes in text, and stay as they are in tables" {
+    turn=$'\xe2\x80\xae'
+    printf 'env\ttask\tmethod\tepisodes\tsuccesses\na%s\tb%s\tc%s\t9\t1\n' "$turn" "$turn" "$turn" >turned.tsv
+    for command in summary table rows cols show; do
+        synpo-matrix "$command" turned.tsv >text
+        grep -qF '\xe2\x80\xae' text || complain "$command: $(cat text)"
+        ! grep -qF "$turn" text || complain "$command: $(cat -v text)"
+    done
+    synpo-matrix compare turned.tsv turned.tsv >text
+    ! grep -qF "$turn" text || complain "compare: $(cat -v text)"
+    synpo-matrix rows --tsv turned.tsv | grep -qF "b$turn"
+    synpo-matrix wide turned.tsv | grep -qF "a$turn"
+}
+
 @test "split -w any: as many environments and tasks as are asked for, nested" {
     synpo-matrix split -w any --envs 30 --tasks push,lift --ratio 0.2 >small.tsv
     synpo-matrix split -w any --envs 30 --tasks push,lift --ratio 0.3 >large.tsv

@@ -107,7 +107,11 @@ std::string ground_code(Rgb ground, TerminalColour colour) {
   return concat("\033[38;5;", ink, ";48;2;", int(ground.r), ';', int(ground.g), ';', int(ground.b), 'm');
 }
 
-std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width) {
+std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, TerminalColour colour, int width) {
+  HeatTable table = named;
+  table.caption = printable(table.caption);
+  for (auto* names : {&table.tasks, &table.envs})
+    for (std::string& name : *names) name = printable(name);
   const bool coloured = colour != TerminalColour::kNone;
   size_t label = 4;
   for (const std::string& task : table.tasks) label = std::max(label, text_width(task));

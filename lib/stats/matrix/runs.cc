@@ -77,8 +77,8 @@ std::vector<Group> group_runs(const Matrix& matrix) {
 
 std::string heading(const Group& group) {
   const auto [least, most] = group.updates();
-  std::string text = group.method.empty() ? "unnamed method" : group.method;
-  if (!group.world.empty()) text += concat(" on ", group.world, ", window ", group.window);
+  std::string text = group.method.empty() ? "unnamed method" : printable(group.method);
+  if (!group.world.empty()) text += concat(" on ", printable(group.world), ", window ", group.window);
   if (most > 0) {
     text += concat(", ", least);
     if (most > least) text += concat(" to ", most);

@@ -138,7 +138,7 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows, TableF
   std::vector<size_t> widths(rows[0].size(), markdown ? 3 : 0);
   for (auto& row : cells) {
     for (size_t i = 0; i < row.size(); ++i) {
-      if (markdown) row[i] = escaped(row[i], format);
+      row[i] = markdown ? escaped(row[i], format) : printable(row[i]);
       widths[i] = std::max(widths[i], text_width(row[i]));
     }
   }
