@@ -78,6 +78,8 @@ struct TsvLog::File {
     std::string line;
     while (rows.line(line)) {
       const bool whole = rows.offset() - end > line.size();
+      if (whole && line.ends_with('\r'))
+        rows.bad_line("ends in CR LF, expected LF alone: take the CRs out first, for instance with tr -d '\\r'");
       if (rows.line_number() == 1 && line != header && (whole || !header.starts_with(line)))
         rows.bad_line(concat("found ", quoted(line), ", expected the columns ", quoted(header), ": another table"));
       if (!whole) return;

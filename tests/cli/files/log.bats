@@ -37,6 +37,14 @@ updates_of() {
     done
 }
 
+@test "a log that has got CRs is not continued: 65, and the message names them" {
+    sed 's/$/\r/' log.tsv >cr.tsv
+    cp cr.tsv before
+    fails 65 synpo-train -q --resume save -n 12 --report 2 --log cr.tsv -o got <e.jsonl
+    says "cr.tsv: line 1: ends in CR LF, expected LF alone"
+    cmp cr.tsv before
+}
+
 @test "a table of another kind is not continued: 65, with the line, and it stays as it is" {
     synpo-finetune ppo -q -c a.ckpt --steps 32 --lanes 4 --rollout 8 --report 1 --log ppo.tsv -o /dev/null
     printf 'update' >short.tsv
