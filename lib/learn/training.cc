@@ -58,6 +58,9 @@ Training::Training(const TrainingSettings& settings, Parallel& parallel) : setti
     const Checkpoint from = load_checkpoint(settings.resume);
     world_ = world_of(from, settings.world);
     run_ = std::make_unique<Imitation>(*world_, parallel, from);
+    if (settings.updates > 0 && settings.updates < run_->updates())
+      fail(Exit::kUsage, "found ", settings.updates, " updates in all, expected at least the ", run_->updates(),
+           " that the checkpoint has");
     if (settings.updates > 0) run_->set_total_updates(settings.updates);
     if (settings.limit_s == 0 && run_->total_updates() == kUnknown)
       fail(Exit::kUsage, kNoLimit, "the run was stopped before its limit in time was told in updates");

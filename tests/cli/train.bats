@@ -57,6 +57,15 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
     cmp a b
     synpo-train -q --resume a </dev/null >c
     cmp a c
+    synpo-train -q --resume a -n 2 </dev/null >c
+    cmp a c
+}
+
+@test "resuming with fewer updates than there are: 64, nothing is written" {
+    synpo-train "${TINY[@]}" -n 3 <e.jsonl >three
+    fails 64 synpo-train -q --resume three -n 2 -o two <e.jsonl
+    says "found 2 updates in all, expected at least the 3 that the checkpoint has"
+    [ ! -e two ]
 }
 
 @test "averaged weights: resumed equals unbroken, 1 and 2 threads" {
