@@ -89,7 +89,7 @@ std::vector<LabelledFiles> labelled_files(std::vector<std::string> operands) {
   for (const NamedFile& file : files) {
     if (first_bad_byte(file.label) != std::string::npos)
       fail(Exit::kUsage, "the label ", quoted(file.label),
-           " is not UTF-8 text: give another with LABEL=", quoted(file.path));
+           " is not UTF-8 text without control characters: give another with LABEL=", quoted(file.path));
     if (file.label.size() > kLongestDrawn)
       fail(Exit::kUsage, "the label ", quoted(file.label), " has ", file.label.size(), " bytes, expected at most ",
            kLongestDrawn, ": give another with LABEL=", quoted(file.path));
