@@ -8,7 +8,7 @@ B        := build
 # Programs, tables, pictures and tests take longer to compile than to run. CXXFLAGS of the caller come last and win.
 QUICK    := tools lib/draw lib/stats/matrix lib/stats/report tests/unit
 OPTIMISE  = $(if $(filter $(QUICK:%=$(B)/%/%),$@),-O1,-O3)
-ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow -fno-math-errno -ffp-contract=fast -pthread -MMD -MP \
+ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast -pthread -MMD -MP \
                -Ilib -Itools $(INCLUDES) $(if $(KIT),-isystem $(KIT)) -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
 OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core

@@ -61,7 +61,8 @@ bool add_printable(std::string_view text, size_t limit, bool told_apart, std::st
 
 std::string printable(std::string_view text, size_t limit) {
   std::string out;
-  return add_printable(text, limit, false, out) ? out : out + "...";
+  if (!add_printable(text, limit, false, out)) out += "...";
+  return out;
 }
 
 std::string quoted(const std::string& text) {
@@ -78,7 +79,7 @@ std::string character_text(std::string_view text, size_t at) {
   if (character == "\r") return "a carriage return";
   if (character == "\xc2\xa0") return "a no-break space";
   if (character == "\xef\xbb\xbf") return "a byte order mark";
-  if (printable_length(text, at) > 0 && is_seen_alone(code)) return "'" + std::string(character) + "'";
+  if (printable_length(text, at) > 0 && is_seen_alone(code)) return concat('\'', character, '\'');
   std::ostringstream out;
   out << "U+" << std::hex << std::uppercase << std::setw(4) << std::setfill('0') << code;
   return out.str();

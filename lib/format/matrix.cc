@@ -132,7 +132,9 @@ std::string training_key(const MatrixRow& row) {
 }
 
 std::string run_key(const MatrixRow& row) {
-  return training_key(row) + (row.temperature ? "\t" + shortest(*row.temperature) : "");
+  std::string key = training_key(row);
+  if (row.temperature) key.append(1, '\t').append(shortest(*row.temperature));
+  return key;
 }
 
 Matrix read_matrix(Input& input) {

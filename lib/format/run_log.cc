@@ -129,7 +129,7 @@ void TsvLog::write(const std::vector<double>& values) {
   if (!file_ || failed()) return;
   if (!file_->begun) file_->begin();
   std::string line;
-  for (const double value : values) line += (line.empty() ? "" : "\t") + number(value);
+  for (const double value : values) line.append(line.empty() ? "" : "\t").append(number(value));
   if (!failed()) file_->put(line + '\n');
 }
 

@@ -30,7 +30,7 @@ void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {
   std::string line = tool_ + ": ";
   if (total_ > 0) {
     const int percent = int(100 * std::min(done, total_) / total_);
-    if (terminal_) line += "[" + std::string(percent / 5, '=') + std::string(20 - percent / 5, ' ') + "] ";
+    if (terminal_) line.append(1, '[').append(percent / 5, '=').append(20 - percent / 5, ' ').append("] ");
     line += std::to_string(percent) + " % of " + short_count(double(total_)) + " " + unit_;
     if (done > first_ && done < total_) line += ", " + clock_time((total_ - done) / rate) + " left";
   } else {
