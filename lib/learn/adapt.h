@@ -24,7 +24,7 @@
 
 namespace synpo {
 
-// What is learned beside the new embeddings.
+// These are learned beside the new embeddings.
 struct AdaptTargets {
   bool heads = false;         // theta, the biases of policy and reward, f_env and f_task
   bool coefficients = false;  // alpha and beta

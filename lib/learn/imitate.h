@@ -34,7 +34,7 @@ class Imitation {
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint);
   // Takes the weights of another model, whose shape must be this one's (kData).
   void take_weights(const Model& other);
-  // Where it is computed, before the first update: on the CPU where nothing is said.
+  // Computes there from the first update on; without a call, on the CPU.
   void compute_on(const DeviceOptions& device);
 
   // One update: reads, then draws and learns.
@@ -48,7 +48,7 @@ class Imitation {
   // False when there is nothing to draw from: the stream ended before its first trajectory.
   bool learn();
 
-  // Where the stream stood; a resumed run skips to there.
+  // The stream stood here; a resumed run skips to there.
   uint64_t stream_lines() const { return stream_lines_; }
   uint64_t stream_hash() const { return stream_hash_; }
   int64_t updates() const { return model_.updates; }
@@ -58,7 +58,7 @@ class Imitation {
   const ImitationOptions& options() const { return options_; }
   int window() const { return model_.window; }
   const Model& model() const { return model_; }
-  // What the stream may bring; empty for anything.
+  // The stream may bring these pairs; any where it is empty.
   std::vector<EnvTask> allowed() const { return seen_grows_ ? std::vector<EnvTask>() : model_.seen; }
 
   // Means since the last call: losses, accuracies, learning rate. Times are the caller's.
@@ -73,7 +73,7 @@ class Imitation {
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved);
   // Hands the arrays over to the engine.
   void give_to_engine();
-  // What is evaluated and saved: the averaged weights where there are any.
+  // These are evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const {
     return options_.averaging > 0 ? average_statistics_ : model_.statistics;

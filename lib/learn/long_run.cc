@@ -10,7 +10,7 @@ namespace {
 
 using Paths = std::vector<std::string>;
 
-// What the checkpoint to go on from may be one file with: the one that it follows, and the last one if that holds all.
+// The checkpoint to go on from may be one file with these: the one that it follows, and the last one if that holds all.
 Paths as_good(const LongRun& settings) {
   Paths paths = {settings.resume};
   if (!settings.strip && settings.output != "-") paths.push_back(settings.output);

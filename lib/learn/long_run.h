@@ -1,4 +1,4 @@
-// What the tools that learn for hours have in common: where they write, after which updates, and the loop itself.
+// The tools that learn for hours have this in common: where they write, after which updates, and the loop itself.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -73,7 +73,7 @@ class LongWork {
   virtual Checkpoint checkpoint(bool with_training_state) const = 0;
 };
 
-// What a long run writes: a checkpoint at its end, one to go on from now and then, a log.
+// A long run writes a checkpoint at its end, one to go on from now and then, and a log.
 //
 // All three are checked, against one another and against what the command has read, and opened before the work. The
 // training state is worth more than the log: where that cannot be written the run goes on, and finish() fails.

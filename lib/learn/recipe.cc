@@ -128,7 +128,7 @@ bool is_toggle(const Hyper& hyper) {
   return std::holds_alternative<bool O::*>(hyper.value) || std::holds_alternative<bool PolicyShape::*>(hyper.value);
 }
 
-// What a member of the options, or of their network, refers to.
+// The value that a member of the options, or of their network, refers to.
 template <class Value>
 auto& place(Value O::*member, auto& options) {
   return options.*member;

@@ -15,7 +15,7 @@
 namespace synpo {
 
 struct ImitationOptions {
-  // What an update learns from.
+  // An update learns from these.
   double trajectories = 64;  // whole trajectories, where batch_states is 0
   double batch_states = 0;   // single steps from running episodes
   double memory = 20000;     // trajectories kept
@@ -38,7 +38,7 @@ struct ImitationOptions {
   double dropout = 0.2, discount = 0.99;
 
   StepOptions step() const { return {{reward_loss, env_loss, task_loss}, dropout, discount}; }
-  // What part of the schedules is over at update `update` (from 0) of `total`: nothing during the warm-up.
+  // The part of the schedules that is over at update `update` (from 0) of `total`: nothing during the warm-up.
   double done(int64_t update, int64_t total) const;
   // As they are at that update.
   RunningOptions running_options(int64_t update, int64_t total) const;
@@ -71,7 +71,7 @@ class RecipeOptions {
 };
 
 std::map<std::string, std::string> describe_options(const ImitationOptions& options);
-// Throws kData for a name that is missing or a value that is none.
+// Throws kData for a name that is missing or a value that cannot be read.
 ImitationOptions parse_options(const std::map<std::string, std::string>& values);
 
 }  // namespace synpo

@@ -34,9 +34,9 @@ struct TrainingSettings : LongRun {
   int64_t updates = 0;
   double limit_s = 0;
   int64_t expect = 0;  // trajectories that the stream must have
-  // What is said when a limit in time has been turned into a number of updates.
+  // Says that a limit in time has been turned into a number of updates.
   std::function<std::string(int64_t total)> told = nullptr;
-  // What is said when the run learns from the starts that success matrices are made of.
+  // Says that the run learns from the starts that success matrices are made of.
   std::function<std::string(const TestedStart&)> on_tested_start = nullptr;
 };
 

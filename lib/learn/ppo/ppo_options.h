@@ -31,7 +31,7 @@ struct PpoOptions {
   // Throws kData where those of a run's checkpoint are others.
   void check_same(const Checkpoint& checkpoint) const;
   // The auxiliary losses weigh what they did in the run that made the checkpoint, where it says so, but for those whose
-  // option was given. Throws kData for values that are none.
+  // option was given. Throws kData for values that cannot be read.
   void take_losses(const Checkpoint& from, const Options& given);
 };
 
