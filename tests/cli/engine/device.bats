@@ -1,5 +1,6 @@
 #!/usr/bin/env bats
-# --device and --precision: what is said where a device is not there, and LibTorch's engine on the CPU where it has been built.
+# --device and --precision: what is said where a device is not there, and LibTorch's engine on the CPU where it has been
+# built.
 
 load ../common
 
@@ -47,7 +48,8 @@ small_training() { # OPTION...
     synpo-train -q --resume half.ckpt -o other.ckpt <expert.jsonl
     for checkpoint in torch other; do
         for device in cpu torch-cpu; do
-            synpo-eval -q -j 1 --device $device -p <(printf 'env\ttask\nmap1\tR-B\n') -n 2 -c $checkpoint.ckpt >$checkpoint-$device.tsv
+            synpo-eval -q -j 1 --device $device -p <(printf 'env\ttask\nmap1\tR-B\n') -n 2 -c $checkpoint.ckpt \
+                >$checkpoint-$device.tsv
         done
     done
     # Their losses are the CPU's but for rounding: the first update's are of the same weights.
@@ -55,9 +57,12 @@ small_training() { # OPTION...
         small_training --device $device -n 1 --report 1 --log $device.tsv -o one.ckpt <expert.jsonl
     done
     paste <(tail -n 1 cpu.tsv) <(tail -n 1 torch-cpu.tsv) | awk -F '\t' '{ n = NF / 2
-        for (i = 7; i <= 11; ++i) if ($i - $(i + n) > 1e-3 * $i || $(i + n) - $i > 1e-3 * $i) { print $i, $(i + n); bad = 1 } } END { exit bad }'
+        for (i = 7; i <= 11; ++i)
+            if ($i - $(i + n) > 1e-3 * $i || $(i + n) - $i > 1e-3 * $i) { print $i, $(i + n); bad = 1 }
+        } END { exit bad }'
     synpo-gen-expert -q -n 3 >demos.jsonl
     synpo-finetune adapt -q --device torch-cpu -n 2 -c torch.ckpt <demos.jsonl >adapted.ckpt
-    synpo-finetune ppo -q --device torch-cpu -j 1 --lanes 4 --rollout 4 --minibatches 2 --epochs 1 --steps 16 -c torch.ckpt >tuned.ckpt
+    synpo-finetune ppo -q --device torch-cpu -j 1 --lanes 4 --rollout 4 --minibatches 2 --epochs 1 \
+        --steps 16 -c torch.ckpt >tuned.ckpt
     synpo-eval --describe -c tuned.ckpt >/dev/null
 }
