@@ -366,7 +366,8 @@ void Learner::infer(int unit, int size, const uint8_t* observations, const int* 
     exchange.results.narrow(0, kLossKinds, scores).copy_(head_->scores(inference_.w, feature, in).reshape({-1}));
     exchange.results.narrow(0, kLossKinds + scores, features).copy_(feature.reshape({-1}));
   });
-  exchange.host_results.copy_(exchange.results, true);
+  const int64_t wanted = kLossKinds + scores + (psi ? features : 0);
+  exchange.host_results.narrow(0, 0, wanted).copy_(exchange.results.narrow(0, 0, wanted), true);
   replay_.finish();
   const float* results = exchange.host_results.data_ptr<float>() + kLossKinds;
   std::copy_n(results, int64_t(size) * sizes_.actions, logits);

@@ -72,6 +72,16 @@ void ResidualBlock<T>::add_preparations(Jobs& jobs, const T* parameters, bool tr
 }
 
 template <class T>
+template <class Count, class Body>
+void ResidualBlock<T>::run_shards(Parallel& parallel, std::initializer_list<Place> convs, Count&& count, Body&& body) {
+  std::vector<std::pair<Place, int>> shards;
+  for (const Place i : convs)
+    for (int shard = 0; shard < count(convs_[i]); ++shard) shards.emplace_back(i, shard);
+  parallel.run(int(shards.size()),
+               [&](int number, int) { body(shards[size_t(number)].first, shards[size_t(number)].second); });
+}
+
+template <class T>
 void ResidualBlock<T>::convolve(Place i, ResidualWorkspace<T>& work, const T* from, Range samples, int shard,
                                 int thread, const T* statistics, bool frozen) {
   const Conv<T>& conv = convs_[i];
@@ -125,15 +135,9 @@ void ResidualBlock<T>::forward(Parallel& parallel, ResidualWorkspace<T>& work, i
 template <class T>
 void ResidualBlock<T>::run_stages(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs,
                                   const T* x, const T* statistics, bool frozen) {
-  int products = 0;
-  for (const Place i : convs) products += convs_[i].product_shards(n_);
-  parallel.run(products, [&](int shard, int) {
-    for (const Place i : convs) {
-      const int own = convs_[i].product_shards(n_);
-      if (shard < own) return convs_[i].stage_product(shard, work.slabs[i], n_, x, z_[i].data());
-      shard -= own;
-    }
-  });
+  run_shards(
+      parallel, convs, [&](const Conv<T>& conv) { return conv.product_shards(n_); },
+      [&](Place i, int shard) { convs_[i].stage_product(shard, work.slabs[i], n_, x, z_[i].data()); });
   for_fine_parts(parallel, n_, [&](Range part, int) {
     for (const Place i : convs) convs_[i].stage_outputs(work.slabs[i], part, z_[i].data());
   });
@@ -209,17 +213,13 @@ template <class T>
 void ResidualBlock<T>::weight_gradients(Parallel& parallel, ResidualWorkspace<T>& work,
                                         std::initializer_list<Place> convs, Range samples, T* gradient) {
   const bool in_stages = staged(parallel, samples.size());
-  const auto run = [&](auto&& count, auto&& body) {
-    std::vector<std::pair<Place, int>> shards;
-    for (const Place i : convs)
-      for (int shard = 0; shard < count(convs_[i]); ++shard) shards.emplace_back(i, shard);
-    parallel.run(int(shards.size()),
-                 [&](int number, int) { body(shards[size_t(number)].first, shards[size_t(number)].second); });
-  };
   if (in_stages)
-    run([](const Conv<T>& conv) { return conv.pack_shards(); },
+    run_shards(
+        parallel, convs, [](const Conv<T>& conv) { return conv.pack_shards(); },
         [&](Place i, int p) { convs_[i].stage_pack(p, work.slabs[i], samples.size()); });
-  run([&](const Conv<T>& conv) { return in_stages ? conv.fine_gradient_shards() : conv.gradient_shards(); },
+  run_shards(
+      parallel, convs,
+      [&](const Conv<T>& conv) { return in_stages ? conv.fine_gradient_shards() : conv.gradient_shards(); },
       [&](Place i, int shard) {
         const Conv<T>& conv = convs_[i];
         T* to = conv.transformed() ? dfactors_[i].data() : gradient + weights_[i];
@@ -234,18 +234,16 @@ void ResidualBlock<T>::weight_gradients(Parallel& parallel, ResidualWorkspace<T>
 template <class T>
 void ResidualBlock<T>::stage_gradients(Parallel& parallel, ResidualWorkspace<T>& work,
                                        std::initializer_list<Place> convs, int samples, bool dx) {
-  int shards = 0;
-  for (const Place i : convs)
-    shards += convs_[i].part_gradient_shards(samples) + (dx ? convs_[i].product_shards(samples) : 0);
-  parallel.run(shards, [&](int shard, int) {
-    for (const Place i : convs) {
-      const Conv<T>& conv = convs_[i];
-      const int parts = conv.part_gradient_shards(samples), products = dx ? conv.product_shards(samples) : 0;
-      if (shard < parts) return conv.stage_part_gradient(shard, work.slabs[i], samples);
-      if (shard < parts + products) return conv.stage_dproduct(shard - parts, work.slabs[i], samples);
-      shard -= parts + products;
-    }
-  });
+  const auto parts = [&](const Conv<T>& conv) { return conv.part_gradient_shards(samples); };
+  run_shards(
+      parallel, convs, [&](const Conv<T>& conv) { return parts(conv) + (dx ? conv.product_shards(samples) : 0); },
+      [&](Place i, int shard) {
+        const Conv<T>& conv = convs_[i];
+        if (shard < parts(conv))
+          conv.stage_part_gradient(shard, work.slabs[i], samples);
+        else
+          conv.stage_dproduct(shard - parts(conv), work.slabs[i], samples);
+      });
 }
 
 template <class T>

@@ -110,6 +110,9 @@ class ResidualBlock {
   bool staged(const Parallel& parallel, int samples) const {
     return parallel.threads() > 2 && shard_count(samples, inner().unit()) < 2 * parallel.threads();
   }
+  // count(conv) shards of each convolution, all at once: body(place, shard).
+  template <class Count, class Body>
+  void run_shards(Parallel& parallel, std::initializer_list<Place> convs, Count&& count, Body&& body);
   void run_stages(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs, const T* x,
                   const T* statistics, bool frozen);
   void stage_gradients(Parallel& parallel, ResidualWorkspace<T>& work, std::initializer_list<Place> convs, int samples,

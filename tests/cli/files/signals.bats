@@ -14,18 +14,13 @@ teardown() {
     [ -z "${pid-}" ] || kill -9 "$pid" 2>/dev/null || true
 }
 
-# stops SIGNAL CODE LINES COMMAND...: the command has the first LINES lines of e.jsonl and waits for more; the signal
-# ends it with CODE.
-stops() {
-    local signal=$1 code=$2 lines=$3 status=0 i
-    shift 3
-    env --default-signal=HUP,INT "$@" <stream >stdout 2>err 3>&- &
-    pid=$!
-    exec 9>stream
-    head -n "$lines" e.jsonl >&9
-    # It waits for the stream, asleep and not to be woken by anything else.
+# ends_asleep SIGNAL PLACE COMMAND...: the process $pid, which runs the command, is asleep in a place of the kernel that
+# matches, not to be woken by anything else, before it gets the signal; it ends, and its exit code goes to $status.
+ends_asleep() {
+    local signal=$1 place=$2 i
+    shift 2
     for ((i = 0; i < 400; ++i)); do
-        grep -q 'poll' "/proc/$pid/wchan" 2>/dev/null && break
+        grep -qE "$place" "/proc/$pid/wchan" 2>/dev/null && break
         [ "$i" -gt 60 ] && grep -q '^State:.S' "/proc/$pid/status" && break
         sleep 0.05
     done
@@ -37,6 +32,18 @@ stops() {
     kill -0 "$pid" 2>/dev/null && complain "$*: it goes on after SIG$signal"
     wait "$pid" || status=$?
     pid=
+}
+
+# stops SIGNAL CODE LINES COMMAND...: the command has the first LINES lines of e.jsonl and waits for more; the signal
+# ends it with CODE.
+stops() {
+    local signal=$1 code=$2 lines=$3 status=0
+    shift 3
+    env --default-signal=HUP,INT "$@" <stream >stdout 2>err 3>&- &
+    pid=$!
+    exec 9>stream
+    head -n "$lines" e.jsonl >&9
+    ends_asleep "$signal" 'poll' "$@"
     exec 9>&-
     [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat err)"
     [ -z "$(find . -name '*.part')" ]
@@ -87,24 +94,12 @@ stops() {
 
 # A command that nobody reads, on pipe: when it waits there, the signal ends it.
 stops_unread() {
-    local signal=$1 code=$2 status=0 i
+    local signal=$1 code=$2 status=0
     shift 2
     env --default-signal=HUP,INT "$@" 2>err 3>&- &
     pid=$!
     exec 9<pipe
-    for ((i = 0; i < 400; ++i)); do
-        grep -qE 'poll|pipe_w' "/proc/$pid/wchan" 2>/dev/null && break
-        [ "$i" -gt 60 ] && grep -q '^State:.S' "/proc/$pid/status" && break
-        sleep 0.05
-    done
-    kill -"$signal" "$pid"
-    for ((i = 0; i < 200; ++i)); do
-        kill -0 "$pid" 2>/dev/null || break
-        sleep 0.05
-    done
-    kill -0 "$pid" 2>/dev/null && complain "$*: it goes on after SIG$signal"
-    wait "$pid" || status=$?
-    pid=
+    ends_asleep "$signal" 'poll|pipe_w' "$@"
     exec 9<&-
     [ "$status" -eq "$code" ] || complain "$*: exit code $status, expected $code: $(cat err)"
     [ -z "$(find . -name '*.part')" ]
