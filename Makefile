@@ -9,6 +9,7 @@ B        := build
 QUICK    := tools lib/draw lib/stats/matrix lib/stats/report tests/unit
 OPTIMISE  = $(if $(filter $(QUICK:%=$(B)/%/%),$@),-O1,-O3)
 ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast \
+               $(if $(findstring clang,$(CXX)),-Wno-unknown-warning-option) \
                -pthread -MMD -MP -Ilib -Itools $(INCLUDES) $(if $(KIT),-isystem $(KIT)) \
                -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
@@ -170,6 +171,8 @@ $(B)/builtin_maps.o: $(B)/builtin_maps.cc
 
 check: all $(B)/unit-tests
 	scripts/check $(B)
+
+include tests/fuzz/fuzz.mk
 
 lint:
 	scripts/lint
