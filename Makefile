@@ -82,8 +82,11 @@ $(TORCH_OBJ): | deps-torch
 endif
 
 .PHONY: all lib torch check lint bench demo gallery deps deps-torch install clean check-torch gpu-kit
-all: $(TOOLS:%=$(B)/%)
+all: $(B)/told
+# So that make -q all says whether anything is to be built.
+$(B)/told: $(TOOLS:%=$(B)/%)
 	@echo "The programs are in $(B)/: $(TOOLS)"
+	@touch $@
 lib: $(B)/libsynpo.a
 torch: $(B)/libsynpo_torch.so
 	@echo "The plug-in of LibTorch is $<: --device torch-cpu$(if $(TORCH_CUDA), or cuda) uses it"
