@@ -86,6 +86,12 @@ says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] ||
     says_all "synpo-matrix: --single map1,O-R: its environment or its task has another single pair already"
     fails 64 synpo-matrix split --single map99,R-B
     says_all "synpo-matrix: --single map99,R-B: 'map99' is no environment of this split"
+    fails 64 synpo-matrix split --single map1 --single map1,O-R
+    says_all "synpo-matrix: --single map1,O-R: its environment or its task has another single pair already"
+    fails 64 synpo-matrix split --single map99
+    says_all "synpo-matrix: --single map99: 'map99' is no environment and no task of this split"
+    fails 64 synpo-matrix split -w any --envs a,b --tasks b,c -n 2 --single b
+    says_all "synpo-matrix: --single b: both an environment and a task"
 }
 
 @test "a policy whose loss demonstrations cannot feed" {

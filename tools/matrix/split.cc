@@ -5,6 +5,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/cli/options.h"
@@ -52,12 +53,25 @@ void take_names(const std::string& world, const std::string& envs, const std::st
   plan.tasks = choose_names("--tasks", tasks, opened->task_names());
 }
 
+// What --single gives: a pair, or the environment or the task alone whose name it is.
+std::pair<std::string, std::string> find_single(const SplitPlan& plan, const std::string& text) {
+  if (text.find(',') != std::string::npos) return split_pair_name(text);
+  const auto among = [&](const std::vector<std::string>& names) {
+    return std::find(names.begin(), names.end(), text) != names.end();
+  };
+  const bool env = among(plan.envs), task = among(plan.tasks);
+  if (env && task) fail(Exit::kUsage, "--single ", text, ": both an environment and a task");
+  if (!env && !task)
+    fail(Exit::kUsage, "--single ", text, ": ", quoted(text), " is no environment and no task of this split");
+  return env ? std::pair(text, std::string()) : std::pair(std::string(), text);
+}
+
 }  // namespace
 
 int matrix_split(int argc, char** argv) {
   SplitPlan plan;
   std::string world = "gridworld", envs, tasks, output_path = "-";
-  std::vector<std::string> parts;
+  std::vector<std::string> parts, singles;
   Options options("synpo-matrix split", "[OPTION]... >PAIRS",
                   "Draws which pairs of environments and tasks are seen in training.");
   options.integer('n', "seen", "COUNT", "seen pairs", plan.seen, 0, INT64_MAX)
@@ -69,8 +83,14 @@ int matrix_split(int argc, char** argv) {
             })
       .integer(0, "cover", "COUNT", "at least so many seen per environment and task", plan.cover, 0, INT64_MAX)
       .shown_as("4, or what -n allows")
-      .call(0, "single", "ENV,TASK", "the one seen pair of this environment and this task; may be repeated",
-            [&](const std::string& text) { plan.singles.push_back(split_pair_name(text)); })
+      .call(0, "single", "NAME",
+            "an environment or a task seen in one pair only, or ENV,TASK: that pair; may be repeated",
+            [&](const std::string& text) {
+              const std::vector<std::string> names = split_names(text);
+              if (names.size() > 2 || std::ranges::find(names, "") != names.end())
+                throw std::invalid_argument("expected an environment, a task, or ENV,TASK");
+              singles.push_back(text);
+            })
       .seed(plan.seed, "seed of the draw", "SEED")
       .text('w', "world", "WORLD", worlds_or_any(), world)
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
@@ -94,6 +114,7 @@ int matrix_split(int argc, char** argv) {
   if (!parts.empty() && plan.setting == 1)
     fail(Exit::kUsage, "--part ", quoted(parts[0]), ": there are no parts without --setting 2 or 3");
   take_names(world, envs, tasks, plan);
+  for (const std::string& single : singles) plan.singles.push_back(find_single(plan, single));
 
   std::vector<PairRow> rows;
   for (const SplitPair& pair : split_pairs(plan))

@@ -130,32 +130,62 @@ std::vector<Cell> seen_order(const std::vector<int>& envs, const std::vector<int
   return order;
 }
 
-int position(const std::vector<std::string>& names, const std::string& name, const std::string& pair,
+int position(const std::vector<std::string>& names, const std::string& name, const std::string& given,
              const char* what) {
   const auto it = std::find(names.begin(), names.end(), name);
-  if (it == names.end()) fail(Exit::kUsage, kSinglePair, pair, ": ", quoted(name), " is no ", what, " of this split");
+  if (it == names.end()) fail(Exit::kUsage, kSinglePair, given, ": ", quoted(name), " is no ", what, " of this split");
   return int(it - names.begin());
+}
+
+// The environments and tasks that have a seen pair of their own, and the pairs that are known before the draw.
+struct Singles {
+  std::set<int> envs, tasks;  // all of them
+  std::vector<Cell> pairs;
+  std::set<int> lone_envs, lone_tasks;  // whose pair is drawn
+};
+
+Singles find_singles(const SplitPlan& plan) {
+  Singles found;
+  for (const auto& [env_name, task_name] : plan.singles) {
+    const bool has_env = !env_name.empty(), has_task = !task_name.empty();
+    const std::string given = env_name + (has_env && has_task ? "," : "") + task_name;
+    const int env = has_env ? position(plan.envs, env_name, given, "environment") : 0,
+              task = has_task ? position(plan.tasks, task_name, given, "task") : 0;
+    if ((has_env && !found.envs.insert(env).second) || (has_task && !found.tasks.insert(task).second))
+      fail(Exit::kUsage, kSinglePair, given, ": its environment or its task has another single pair already");
+    if (has_env && has_task)
+      found.pairs.push_back({env, task});
+    else if (has_env)
+      found.lone_envs.insert(env);
+    else if (has_task)
+      found.lone_tasks.insert(task);
+  }
+  return found;
 }
 
 // Which pairs are seen of a table of `envs` x `tasks` pairs, as [env * tasks + task].
 std::vector<char> draw_seen(const SplitPlan& plan, int envs, int tasks, int64_t count) {
   std::vector<char> seen(size_t(envs) * tasks, 0);
-  std::set<int> single_envs, single_tasks;
-  for (const auto& [env_name, task_name] : plan.singles) {
-    const std::string pair = env_name + "," + task_name;
-    const int env = position(plan.envs, env_name, pair, "environment"),
-              task = position(plan.tasks, task_name, pair, "task");
-    if (!single_envs.insert(env).second || !single_tasks.insert(task).second)
-      fail(Exit::kUsage, kSinglePair, pair, ": its environment or its task has another single pair already");
-    seen[size_t(env) * tasks + task] = 1;
-  }
+  const Singles single = find_singles(plan);
   std::vector<int> free_envs, free_tasks;
   for (int env = 0; env < envs; ++env)
-    if (!single_envs.contains(env)) free_envs.push_back(env);
+    if (!single.envs.contains(env)) free_envs.push_back(env);
   for (int task = 0; task < tasks; ++task)
-    if (!single_tasks.contains(task)) free_tasks.push_back(task);
+    if (!single.tasks.contains(task)) free_tasks.push_back(task);
+  if ((!single.lone_envs.empty() && free_tasks.empty()) || (!single.lone_tasks.empty() && free_envs.empty()))
+    fail(Exit::kUsage, "no environment or no task is left that a single one could be seen with");
 
-  const int64_t singles = int64_t(single_envs.size());
+  for (const Cell& cell : single.pairs) seen[size_t(cell.env) * tasks + cell.task] = 1;
+  for (int env : single.lone_envs) {
+    Random random(plan.seed, Purpose::kSplit, 2, uint64_t(env));
+    seen[size_t(env) * tasks + free_tasks[random.below(uint32_t(free_tasks.size()))]] = 1;
+  }
+  for (int task : single.lone_tasks) {
+    Random random(plan.seed, Purpose::kSplit, 3, uint64_t(task));
+    seen[size_t(free_envs[random.below(uint32_t(free_envs.size()))]) * tasks + task] = 1;
+  }
+
+  const int64_t singles = int64_t(single.pairs.size() + single.lone_envs.size() + single.lone_tasks.size());
   const int64_t longer = int64_t(std::max(free_envs.size(), free_tasks.size()));
   const int64_t shorter = int64_t(std::min(free_envs.size(), free_tasks.size()));
   const int64_t most = singles + longer * shorter;

@@ -22,7 +22,10 @@ struct SplitPlan {
   double ratio = 0;  // the same as a share of all pairs (of P's pairs), where not 0 and `seen` is not given
   // At least so many seen pairs for every environment and every task; by default 4, or what the count allows.
   int64_t cover = -1;
-  // Each the only seen pair of its environment and of its task (Figure 6); cover does not apply to those two.
+  // Each the only seen pair of its environment and of its task. One of the names may be empty: then the other's one
+  // seen pair is drawn, with a partner that is none of these. An environment and a task that are given so, each alone,
+  // are the case of Figure 6: env_0 is seen only with (R,B), (O,R) only with env_2, and they are not seen together.
+  // Cover does not apply to those that are named here.
   std::vector<std::pair<std::string, std::string>> singles;
   // 1: no parts. In settings 2 and 3 the first p_envs environments and p_tasks tasks (half by default, rounded up) make
   // P, on which everything is trained. Setting 2: Q is the upper right and the lower left quadrant, new environments
@@ -40,7 +43,8 @@ struct SplitPair {
 
 // All pairs, environment by environment. The same plan gives the same split. The seen pairs are the first of one order
 // that depends on names' number, seed, cover and singles only, so a smaller count gives a subset of a larger one.
-// Throws kUsage when the plan cannot be met; kSinglePair with the name of a single pair that is in its way.
+// Throws kUsage when the plan cannot be met; kSinglePair with the name of a single pair, environment or task that is in
+// its way.
 constexpr Cause kSinglePair{"a single pair"};
 std::vector<SplitPair> split_pairs(const SplitPlan& plan);
 

@@ -156,6 +156,32 @@ TEST(Split, SinglePairsAreAlone) {
   }
 }
 
+// Figure 6: an environment and a task are each seen in one pair only, in different places, and not together.
+TEST(Split, SingleEnvironmentAndSingleTaskApart) {
+  std::map<std::string, int> partners;
+  for (uint64_t seed = 0; seed < 300; ++seed) {
+    SplitPlan p = plan(10, 10, 20, seed);
+    p.singles = {{"e1", ""}, {"", "t9"}};
+    Seen seen(p);
+    ASSERT_EQ(seen.pairs.size(), 20u);
+    EXPECT_EQ(seen.times["e1"], 1);
+    EXPECT_EQ(seen.times["t9"], 1);
+    EXPECT_FALSE(seen.pairs.contains("e1 t9"));
+    for (const std::string& pair : seen.pairs)
+      if (pair.starts_with("e1 ") || pair.ends_with(" t9")) ++partners[pair];
+    seen.times.erase("e1");
+    seen.times.erase("t9");
+    EXPECT_GE(seen.least(), 2);
+    p.singles = {{"", "t9"}, {"e1", ""}};  // their order says nothing
+    EXPECT_EQ(Seen(p).pairs, seen.pairs);
+    p.seen = 40;
+    const std::set<std::string> more = Seen(p).pairs;
+    EXPECT_TRUE(std::includes(more.begin(), more.end(), seen.pairs.begin(), seen.pairs.end()));
+  }
+  ASSERT_EQ(partners.size(), 18u);  // nine of each, 33 times expected, sd 5.4
+  for (const auto& [pair, count] : partners) EXPECT_NEAR(count, 33, 22) << pair;
+}
+
 TEST(Split, Quadrants) {
   for (int setting : {2, 3}) {
     SplitPlan p = plan(20, 20, -1);
@@ -202,6 +228,14 @@ TEST(Split, RefusesPlansThatCannotBeMet) {
   p.singles.push_back({"e1", "t2"});
   EXPECT_EQ(refused(p), "64 e1,t2: its environment or its task has another single pair already");
   EXPECT_TRUE(fails_for(kSinglePair, [&] { split_pairs(p); }));
+  p.singles = {{"e1", "t1"}, {"", "t1"}};
+  EXPECT_EQ(refused(p), "64 t1: its environment or its task has another single pair already");
+  p.singles = {{"", "t9"}};
+  EXPECT_EQ(refused(p), "64 t9: 't9' is no task of this split");
+  p.singles = {{"e1", ""}, {"e2", ""}, {"", "t1"}};
+  EXPECT_EQ(refused(p), "64 cannot have 18 seen pairs: 5 x 5 pairs with these single ones allow 3 to 15");
+  p.singles = {{"e1", ""}, {"e2", ""}, {"e3", ""}, {"e4", ""}, {"e5", ""}, {"", "t1"}};
+  EXPECT_EQ(refused(p), "64 no environment or no task is left that a single one could be seen with");
   p.singles = {{"e9", "t1"}};
   EXPECT_EQ(refused(p), "64 e9,t1: 'e9' is no environment of this split");
   EXPECT_TRUE(fails_for(kSinglePair, [&] { split_pairs(p); }));
