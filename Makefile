@@ -13,10 +13,10 @@ ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -
                -pthread -MMD -MP -Ilib -Itools $(INCLUDES) $(if $(KIT),-isystem $(KIT)) \
                -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
-OPENCV_LIBS   = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core
+DRAW_LIBS     = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core -lgif
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-# DRAW=no leaves out pictures, and with them OpenCV.
+# DRAW=no leaves out pictures, and with them OpenCV and giflib.
 LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' \
             $(if $(filter no,$(DRAW)),-not '(' -path 'lib/draw/*/*' -not -path 'lib/draw/terminal/*' ')'))
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
@@ -33,7 +33,7 @@ TEST_SRC := $(shell find tests/unit -name '*.cc')
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
 MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
 
-PACKAGES := g++ make libeigen3-dev libopencv-dev nlohmann-json3-dev fonts-dejavu-core \
+PACKAGES := g++ make libeigen3-dev libopencv-dev libgif-dev nlohmann-json3-dev fonts-dejavu-core \
             libgtest-dev bats jq man-db python3-numpy
 
 # LibTorch on Debian takes any BLAS; with the reference one it crawls.
@@ -99,7 +99,7 @@ $(B)/libsynpo.a: $(LIB_OBJ)
 define TOOL_RULE
 $(B)/$(1): $(patsubst %.cc,$(B)/%.o,tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc)) $(B)/libsynpo.a
 	$$(call say,LINK,$$@)
-	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(OPENCV_LIBS))
+	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(DRAW_LIBS))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
 
@@ -131,15 +131,15 @@ $(B)/gtest.o:
 
 $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
 	$(call say,LINK,$@)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(OPENCV_LIBS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(DRAW_LIBS)
 
 $(TEST_OBJ): INCLUDES += -Itests/unit
 
 # Eigen, the yardstick there, knows no dispatch at run time.
 $(B)/tests/bench/synpo-bench.o: OPTIMISE = -O3 -march=native
 
-# Only lib/draw/canvas and lib/draw/vision, and the tests of drawing, see OpenCV.
-$(B)/lib/draw/canvas/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(OPENCV_CFLAGS)
+# Only these, and the tests of drawing, see OpenCV.
+$(B)/lib/draw/canvas/%.o $(B)/lib/draw/video/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(OPENCV_CFLAGS)
 
 # Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same
 # level.

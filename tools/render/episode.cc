@@ -13,11 +13,12 @@
 #include "base/signals.h"
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/font.h"
-#include "draw/canvas/video.h"
 #include "draw/episode/episode_picture.h"
 #include "draw/face/film.h"
 #include "draw/face/world_face.h"
 #include "draw/terminal/terminal.h"
+#include "draw/video/gif.h"
+#include "draw/video/video.h"
 #include "draw/worlds/faces.h"
 #include "play/episode.h"
 #include "play/stream.h"
@@ -53,6 +54,14 @@ void write_frames(const std::string& path, int steps, const Frame& frame) {
 }
 
 void write_video(const std::string& path, double rate, int steps, const Frame& frame) {
+  if (path.ends_with(".gif")) {
+    Output output(path, Output::Kind::kBinary);
+    finish(output, animated_gif(steps + 1, rate, [&](int i) {
+             stop_if_asked();
+             return frame(i);
+           }));
+    return;
+  }
   std::unique_ptr<Video> video;
   for (int i = 0; i <= steps; ++i) {
     stop_if_asked();
@@ -83,7 +92,7 @@ int episode(int argc, char** argv) {
       .section("instead of the picture")
       .flag(0, "ansi", "the path through a maze as text, in coloured blocks on a terminal that has colours", ansi)
       .text(0, "frames", "DIR", "a folder of numbered PNG files, one for the start and one after every step", frames)
-      .text(0, "video", "FILE", "the same as a video: .avi, or .mp4, .mkv where OpenCV can", video)
+      .text(0, "video", "FILE", "the same as a video: .gif, .avi, or .mp4, .mkv where OpenCV can", video)
       .real(0, "rate", "HZ", "the video's frames per second", rate, 0.1, 240);
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double kSidePt = 330, kFrameSidePt = 208, kMarginPt = 12, kTextPt = 9;
 constexpr double kLeastWidePt = 240, kLeastHighPt = 90, kWordyPt = 380;  // of small plans, and with words beside them
+constexpr double kFrameTitlePt = 13, kFrameTextPt = 11;                  // read while things move
 constexpr int kStripColumns = 6;
 
 void draw_way(Canvas& canvas, const WorldFace& face, const PlanGrid& place, const Film& film, int moment, Shown shown) {
@@ -90,8 +91,8 @@ Canvas draw_episode_frame(const WorldFace& face, const Film& film, int moment, c
   const Pixels px{style.scale};
   const PlanSize size = face.plan_size(film.pair.env);
   const PlanLayout plan = lay_out_plan(size, kFrameSidePt, kFrameSidePt, px);
-  const int margin = px(kMarginPt), between = px(kMarginPt), title = px(12), text = px(kTextPt),
-            panels_y = margin + px(17) + px(16);
+  const int margin = px(kMarginPt), between = px(kMarginPt), title = px(kFrameTitlePt), text = px(kFrameTextPt),
+            text_y = margin + px(19), panels_y = text_y + px(19);
   const int side = std::max(square_side(kFrameSidePt, face.seen_unit(), px), plan.high),
             width = plan.wide + between + side;
   const auto even = [](int n) { return n + n % 2; };
@@ -101,7 +102,9 @@ Canvas draw_episode_frame(const WorldFace& face, const Film& film, int moment, c
   const std::string words =
       moment == film.steps() ? concat(face.outcome(film), " after step ", moment)
                              : concat("step ", moment + 1, " of ", film.steps(), ": ", face.action_words(film, moment));
-  canvas.text(margin, margin + px(17), font.fitted(words, text, width), text, kSoftInk);
+  canvas.text(margin, text_y, font.fitted(words, text, plan.wide > 0 ? plan.wide : width), text, kSoftInk);
+  if (plan.wide > 0)
+    canvas.text(margin + plan.wide + between, text_y, font.fitted("what the agent sees", text, side), text, kSoftInk);
   draw_way(canvas, face, {margin, panels_y + (side - plan.high) / 2, plan.cell, size.columns}, film, moment,
            Shown::kMoment);
   face.draw_seen(canvas, {margin + plan.wide + between, panels_y, side, side}, film, moment);

@@ -58,7 +58,7 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
 
 @test "--frames, --video: stopped half way, nothing is left" {
     for signal in INT TERM; do
-        for films in "--frames frames" "--video a.avi"; do
+        for films in "--frames frames" "--video a.avi" "--video a.gif"; do
             # shellcheck disable=SC2086
             env --default-signal=INT synpo-render episode --scale 3 $films e.jsonl &
             until ls | grep -q part; do kill -0 $! || complain "$films: done before it could be stopped"; done
@@ -66,9 +66,26 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
             status=0
             wait $! || status=$?
             [ "$status" = $((128 + $(kill -l $signal))) ]
-            ! ls | grep 'part\|frames\|avi' || complain "files are left"
+            ! ls | grep 'part\|frames\|avi\|gif' || complain "files are left"
         done
     done
+}
+
+@test "--video: GIF, which shows every moment, the same bytes twice" {
+    moments=$(($(head -n 1 e.jsonl | jq '.actions | length') + 1))
+    synpo-render episode --scale 0.5 --video a.gif e.jsonl
+    synpo-render episode --scale 0.5 --video b.gif --rate 8 e.jsonl
+    cmp a.gif b.gif
+    head -c 6 a.gif >magic
+    printf GIF89a | cmp - magic
+    # Each picture comes after a block of its own, that begins so.
+    [ "$(LC_ALL=C grep -aoP '\x21\xf9\x04' a.gif | wc -l)" -eq "$moments" ]
+    synpo-render episode --scale 0.5 --video b.gif --rate 20 e.jsonl
+    run ! cmp -s a.gif b.gif
+    fails 73 synpo-render episode --video missing/a.gif e.jsonl
+    says "cannot create 'missing/a.gif': No such file or directory"
+    ln -s /dev/full full.gif
+    fails 74 synpo-render episode --scale 0.5 --video full.gif e.jsonl
 }
 
 @test "--video: the same bytes twice; other formats 64, nowhere 73" {
@@ -79,8 +96,8 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
     printf RIFF | cmp - magic
     synpo-render episode --scale 0.5 --video b.avi --rate 30 e.jsonl
     run ! cmp -s a.avi b.avi
-    fails 64 synpo-render episode --video a.gif e.jsonl
-    says "cannot tell the format of the video 'a.gif': expected a name that ends in .avi"
+    fails 64 synpo-render episode --video a.webm e.jsonl
+    says "cannot tell the format of the video 'a.webm': expected a name that ends in .gif, .avi, .mp4 or .mkv"
     fails 73 synpo-render episode --video missing/a.avi e.jsonl
     says "cannot create 'missing/a.avi': No such file or directory"
 }
@@ -134,6 +151,7 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
 --video a.avi --rate 0
 --ansi --frames frames
 --ansi --video a.avi
+--ansi --video a.gif
 --frames frames -o a.png
 --scale 99
 -w atari

@@ -9,7 +9,7 @@
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/stroke.h"
 #include "draw/canvas/ticks.h"
-#include "draw/canvas/video.h"
+#include "draw/video/video.h"
 #include "draw/colour.h"
 #include "helpers/font.h"
 #include "helpers/table_helpers.h"

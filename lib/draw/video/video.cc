@@ -1,4 +1,4 @@
-#include "draw/canvas/video.h"
+#include "draw/video/video.h"
 
 #include <filesystem>
 #include <opencv2/core.hpp>
@@ -26,7 +26,7 @@ const Format& format_of(const std::string& path) {
   for (const Format& format : kFormats)
     if (std::filesystem::path(path).extension() == format.extension) return format;
   fail(Exit::kUsage, "cannot tell the format of the video '", path,
-       "': expected a name that ends in .avi, .mp4 or .mkv");
+       "': expected a name that ends in .gif, .avi, .mp4 or .mkv");
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ Video::Video(const std::string& path, double frames_per_second, int width, int h
   if (!writer_->video.open(writer_->file.path(), format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]),
                            frames_per_second, {width, height}))
     fail(Exit::kUsage, "cannot write the video '", path, "': this OpenCV cannot write ", format.extension,
-         ", but .avi it can");
+         ", but .gif and .avi it can");
 }
 
 Video::~Video() = default;
