@@ -1,6 +1,6 @@
-# synpo: make deps installs what is needed, make builds into build/, make check tests, make demo shows it at work.
-# make V=1 shows the commands.
+# synpo: make help says what there is to make. make V=1 shows the commands.
 
+VERSION  := 0.2.0
 CXX      ?= g++
 PREFIX   ?= /usr/local
 B        := build
@@ -27,7 +27,7 @@ TARGET_avx2   := -mavx2 -mfma
 TARGET_avx512 := $(TARGET_avx2) -mavx512f -mavx512bw -mavx512dq -mavx512vl
 TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GCC 12 warns of its own header
 KERNEL_OBJ := $(TARGETS:%=$(B)/lib/kernel/target_%.o)
-LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o
+LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o $(B)/version.o
 TOOL_SRC := $(shell find tools -name '*.cc')
 TEST_SRC := $(shell find tests/unit -name '*.cc')
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
@@ -68,8 +68,10 @@ Q   :=
 say :=
 else
 Q   := @
-say = @printf '%-4s %s\n' '$(1)' '$(2)'
+say = @printf '%-4s %s\n' '$(1)' '$(2)' $(ASIDE)
 endif
+# What installs and compilers say goes to stderr where something else is asked for.
+ASIDE := $(if $(filter bench deps deps-torch,$(MAKECMDGOALS)),>&2)
 
 # Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs
 # them.
@@ -81,15 +83,16 @@ ifneq ($(filter deps-torch,$(MAKECMDGOALS)),)
 $(TORCH_OBJ): | deps-torch
 endif
 
-.PHONY: all lib torch check lint bench demo gallery deps deps-torch install clean check-torch gpu-kit
+.PHONY: all lib torch check test lint bench demo gallery deps deps-torch install uninstall clean check-torch gpu-kit \
+    dist help
 all: $(B)/told
 # So that make -q all says whether anything is to be built.
 $(B)/told: $(TOOLS:%=$(B)/%)
-	@echo "The programs are in $(B)/: $(TOOLS)"
+	@echo "The programs are in $(B)/: $(TOOLS)" $(ASIDE)
 	@touch $@
 lib: $(B)/libsynpo.a
 torch: $(B)/libsynpo_torch.so
-	@echo "The plug-in of LibTorch is $<: --device torch-cpu$(if $(TORCH_CUDA), or cuda) uses it"
+	@echo "The plug-in of LibTorch is $<: --device torch-cpu$(if $(TORCH_CUDA), or cuda) uses it" $(ASIDE)
 
 $(B)/libsynpo.a: $(LIB_OBJ)
 	$(call say,AR,$@)
@@ -168,12 +171,24 @@ $(B)/builtin_maps.cc: $(MAPS) Makefile
 	@mkdir -p $(@D)
 	@{ echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
 	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; echo '};'; echo '}'; } > $@
-$(B)/builtin_maps.o: $(B)/builtin_maps.cc
+# Written again, and with it compiled, where the commit is another one than that of the last build. make COMMIT=abc1234
+# says it where there is no git.
+ifneq ($(origin COMMIT),command line)
+COMMIT := $(shell scripts/commit)
+endif
+NAMES := const char kVersion[] = "$(VERSION)", kCommit[] = "$(COMMIT)";
+ifeq ($(findstring $(NAMES),$(file <$(B)/version.cc)),)
+$(B)/version.cc: FORCE
+endif
+$(B)/version.cc: Makefile
+	@mkdir -p $(@D)
+	@printf '%s\n' '#include "base/cli/version.h"' 'namespace synpo {' '$(NAMES)' '}' > $@
+$(B)/builtin_maps.o $(B)/version.o: %.o: %.cc
 	$(call say,CXX,$<)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
 
-check: all $(B)/unit-tests
-	scripts/check $(B)
+check test: all $(B)/unit-tests
+	@scripts/check $(B)
 
 include tests/fuzz/fuzz.mk
 
@@ -186,29 +201,64 @@ check-torch: torch $(B)/engine-tests
 	$(Q)! grep -q amx_tile /proc/cpuinfo || export SYNPO_KERNELS=avx512; SYNPO_TORCH= $(B)/engine-tests --gtest_brief=1
 
 bench: all $(B)/synpo-bench | $(filter torch,$(MAKECMDGOALS))
-	scripts/bench
+	@scripts/bench
 
 gallery: all
 	scripts/gallery $(CHECKPOINT)
 
 demo: all
-	scripts/demo
+	@scripts/demo
 
 deps:
-	scripts/deps $(PACKAGES)
+	@scripts/deps $(PACKAGES)
 
 # What scripts/check-gpu needs on a machine that has nothing but a compiler, make and PyTorch.
 gpu-kit:
 	scripts/gpu-kit
 
 deps-torch:
-	scripts/deps $(TORCH_PACKAGES)
+	@scripts/deps $(TORCH_PACKAGES)
 
 install: all | $(filter torch,$(MAKECMDGOALS))
 	install -d $(DESTDIR)$(PREFIX)/bin $(foreach section,1 5 7,$(DESTDIR)$(PREFIX)/share/man/man$(section))
 	install -m 755 $(TOOLS:%=$(B)/%) $(DESTDIR)$(PREFIX)/bin
 	[ ! -e $(B)/libsynpo_torch.so ] || install -D -m 644 -t $(DESTDIR)$(PREFIX)/lib/synpo $(B)/libsynpo_torch.so
 	for section in 1 5 7; do install -m 644 man/*.$$section $(DESTDIR)$(PREFIX)/share/man/man$$section; done
+
+# What install put there, and the folder that it made for the plug-in.
+uninstall:
+	rm -f $(addprefix $(DESTDIR)$(PREFIX)/,$(TOOLS:%=bin/%) lib/synpo/libsynpo_torch.so \
+	    $(foreach page,$(notdir $(wildcard man/*)),share/man/man$(subst .,,$(suffix $(page)))/$(page)))
+	[ ! -d $(DESTDIR)$(PREFIX)/lib/synpo ] || rmdir --ignore-fail-on-non-empty $(DESTDIR)$(PREFIX)/lib/synpo
+
+# The sources of the commit, to the same bytes whoever makes it.
+dist:
+	@mkdir -p $(B)
+	@git archive --format=tar --prefix=synpo-$(VERSION)/ HEAD >$(B)/dist.tar
+	@gzip -9 -n <$(B)/dist.tar >$(B)/synpo-$(VERSION).tar.gz && rm $(B)/dist.tar
+	@git diff --quiet HEAD || echo 'dist: changes since the last commit are not in it' >&2
+	@echo $(B)/synpo-$(VERSION).tar.gz
+
+help:
+	@printf '  make %-11s %s\n' \
+	    '' 'the programs, in $(B)/' \
+	    deps 'install the Debian packages that are needed, as root or with sudo' \
+	    demo 'a small training and its pictures, in $(B)/demo' \
+	    'check, test' 'all tests' \
+	    lint 'look at the sources without running them' \
+	    install 'programs and pages, under PREFIX=/usr/local' \
+	    uninstall 'take them away again' \
+	    lib 'the library alone, $(B)/libsynpo.a' \
+	    deps-torch 'install what torch needs' \
+	    torch 'the plug-in of LibTorch, for --device; TORCH=DIR for that of a PyTorch' \
+	    check-torch 'compare the two engines' \
+	    bench 'rates, as a table' \
+	    gallery 'draw lab/gallery again' \
+	    gpu-kit 'pack what scripts/check-gpu compiles with' \
+	    dist 'a tarball of the sources' \
+	    fuzz 'feed every reader what it does not expect (tests/fuzz)' \
+	    clean 'remove $(B)/'
+	@echo; echo 'V=1 shows the commands; CXXFLAGS, DESTDIR, PREFIX and B=DIR for $(B)/ are kept. README.md has the rest.'
 
 clean:
 	rm -rf $(B)

@@ -25,7 +25,8 @@ int body(int argc, char** argv) {
        {"ppo",
         "reinforcement learning on the seen pairs",
         ppo,
-        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate, kBuildPlugin, {kNoPairs, "{}: give them with -p"}}}},
+        {kNameFolder, kNameOtherFolder, kLeaveWorld, kSmallerRate, kBuildPlugin, {kNoPairs, "{}: give them with -p"}}},
+       {"strip", "leaves out what only training needs", strip}},
       argc, argv);
 }
 

@@ -1,9 +1,13 @@
 #include "format/checkpoint.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "base/cli/version.h"
 #include "base/error.h"
+#include "base/half.h"
 #include "base/hash.h"
 #include "base/text.h"
 #include "format/json_text.h"
@@ -48,6 +52,7 @@ OrderedJson to_json(const Checkpoint& c) {
   OrderedJson out;
   out["format"] = kFormat;
   out["version"] = kCheckpointVersion;
+  if (!c.written_by.empty()) out["written_by"] = c.written_by;
   out["method"] = c.method;
   out["world"] = c.world;
   out["rules"] = c.rules;
@@ -96,6 +101,19 @@ void Checkpoint::strip() {
   std::erase_if(file.tensors, [](const auto& entry) { return entry.first.starts_with(kTrainPrefix); });
 }
 
+void Checkpoint::halve() {
+  for (auto& [name, tensor] : file.tensors) {
+    // Biases, statistics and the like take little room, and their small values count.
+    if (tensor.type != TensorType::kF32 || tensor.shape.size() < 2) continue;
+    const std::vector<float> values = file.get<float>(name);
+    // What is not finite stays too, for the reader to refuse.
+    if (!std::all_of(values.begin(), values.end(), [](float value) { return std::fabs(value) <= kHalfMax; })) continue;
+    std::vector<Half> halves(values.size());
+    std::transform(values.begin(), values.end(), halves.begin(), to_half);
+    file.add(name, std::vector<int64_t>(tensor.shape), halves.data(), halves.size());
+  }
+}
+
 std::string Checkpoint::describe() const {
   OrderedJson out = to_json(*this);
   out["weights_hash"] = hex(weights_hash());
@@ -115,6 +133,7 @@ Checkpoint read_checkpoint(Input& input) {
     const int64_t version = whole(file, "version");
     if (version < 1 || version > kCheckpointVersion)
       fail(Exit::kData, "version ", version, ", this build reads 1 to ", kCheckpointVersion);
+    if (file.metadata.count("written_by")) c.written_by = file.meta("written_by");
     c.method = checked_name("method", file.meta("method"));
     c.world = checked_name("world", file.meta("world"));
     c.rules = int(std::min<int64_t>(whole(file, "rules"), INT32_MAX));
@@ -155,7 +174,8 @@ Checkpoint load_checkpoint(const std::string& path) {
 std::string format_checkpoint(const Checkpoint& checkpoint) {
   SafeTensors file = checkpoint.file;
   file.metadata.clear();
-  const OrderedJson metadata = to_json(checkpoint);
+  OrderedJson metadata = to_json(checkpoint);
+  metadata["written_by"] = "synpo " + version_text();
   for (const auto& [key, value] : metadata.items())
     file.metadata[key] = value.is_string() ? value.get<std::string>() : value.dump();
   return format_safetensors(file);

@@ -19,7 +19,8 @@ struct Checkpoint {
     uint64_t hash;
     std::string content;  // canonical; empty where it lies in a file of its own
   };
-  std::string source;  // where it was read, for messages; not in the file
+  std::string source;      // where it was read, for messages; not in the file
+  std::string written_by;  // "synpo VERSION" that wrote the file it was read from; what is written says this build's
   std::string method = "synpo";
   std::string world = "gridworld";
   int rules = 1;
@@ -38,6 +39,8 @@ struct Checkpoint {
   uint64_t weights_hash() const;
   // Drops everything under train/.
   void strip();
+  // Makes F16 of the float32 tensors of two axes or more that it can hold: the nearest values, which load as float32.
+  void halve();
   // The metadata as one JSON object, for people.
   std::string describe() const;
 };

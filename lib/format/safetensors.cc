@@ -1,7 +1,9 @@
 #include "format/safetensors.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
@@ -22,9 +24,10 @@ struct TypeName {
   const char* name;
   size_t size;
 };
-constexpr TypeName kTypes[] = {{TensorType::kF16, "F16", 2}, {TensorType::kF32, "F32", 4}, {TensorType::kF64, "F64", 8},
-                               {TensorType::kI32, "I32", 4}, {TensorType::kI64, "I64", 8}, {TensorType::kU8, "U8", 1},
-                               {TensorType::kU64, "U64", 8}};
+constexpr TypeName kTypes[] = {{TensorType::kBF16, "BF16", 2}, {TensorType::kF16, "F16", 2},
+                               {TensorType::kF32, "F32", 4},   {TensorType::kF64, "F64", 8},
+                               {TensorType::kI32, "I32", 4},   {TensorType::kI64, "I64", 8},
+                               {TensorType::kU8, "U8", 1},     {TensorType::kU64, "U64", 8}};
 
 const TypeName& type_name(TensorType type) {
   return *std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return t.type == type; });
@@ -39,6 +42,20 @@ constexpr TensorType type_of() {
   if constexpr (std::is_same_v<T, int64_t>) return TensorType::kI64;
   if constexpr (std::is_same_v<T, uint8_t>) return TensorType::kU8;
   if constexpr (std::is_same_v<T, uint64_t>) return TensorType::kU64;
+}
+
+// The values of a tensor of two bytes each.
+std::vector<float> widened(const Tensor& tensor) {
+  std::vector<float> values(tensor.count());
+  for (size_t i = 0; i < values.size(); ++i) {
+    uint16_t bits;
+    std::memcpy(&bits, tensor.bytes.data() + i * sizeof bits, sizeof bits);
+    if (tensor.type == TensorType::kBF16)
+      values[i] = std::bit_cast<float>(uint32_t(bits) << 16);
+    else
+      values[i] = is_finite(Half{bits}) ? to_float(Half{bits}) : std::numeric_limits<float>::quiet_NaN();
+  }
+  return values;
 }
 
 uint64_t whole(const std::string& where, const Json& value) {
@@ -86,6 +103,8 @@ std::vector<T> SafeTensors::get(const std::string& name) const {
   const auto found = tensors.find(name);
   if (found == tensors.end()) fail(Exit::kData, "no tensor '", name, "'");
   const Tensor& tensor = found->second;
+  if constexpr (std::is_same_v<T, float>)
+    if (tensor.type == TensorType::kBF16 || tensor.type == TensorType::kF16) return widened(tensor);
   if (tensor.type != type_of<T>())
     fail(Exit::kData, "tensor '", name, "': found type ", type_name(tensor.type).name, ", expected ",
          type_name(type_of<T>()).name);
@@ -147,7 +166,7 @@ SafeTensors read_safetensors(Input& input) {
     const auto known =
         std::find_if(std::begin(kTypes), std::end(kTypes), [&](const TypeName& t) { return type == t.name; });
     if (known == std::end(kTypes))
-      bad(where, ": type ", quoted(type.dump()), ", this build reads F16, F32, F64, I32, I64, U8 and U64");
+      bad(where, ": type ", quoted(type.dump()), ", this build reads BF16, F16, F32, F64, I32, I64, U8 and U64");
     const auto& shape = entry["shape"];
     const auto& offsets = entry["data_offsets"];
     if (!shape.is_array() || shape.size() > 8) bad(where, ": shape is no array of at most 8 numbers");

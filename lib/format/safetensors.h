@@ -10,7 +10,7 @@
 
 namespace synpo {
 
-enum class TensorType { kF16, kF32, kF64, kI32, kI64, kU8, kU64 };
+enum class TensorType { kBF16, kF16, kF32, kF64, kI32, kI64, kU8, kU64 };
 size_t type_size(TensorType type);
 // As the file has it: "F32".
 const char* type_text(TensorType type);
@@ -29,7 +29,8 @@ struct SafeTensors {
 
   template <class T>
   void add(const std::string& name, const std::vector<int64_t>& shape, const T* values, size_t count);
-  // Throws kData when the tensor is missing or has another type or count.
+  // Throws kData when the tensor is missing or has another type or count. As floats F16 and BF16 are read too, exactly;
+  // what F16 holds that is not finite becomes NaN.
   template <class T>
   void get(const std::string& name, T* values, size_t count) const;
   template <class T>

@@ -1,7 +1,8 @@
 load common
 
 # The commands that have a --help of their own.
-COMMANDS=(synpo-gen-expert synpo-train synpo-finetune "synpo-finetune adapt" "synpo-finetune ppo" synpo-eval
+COMMANDS=(synpo-gen-expert synpo-train synpo-finetune "synpo-finetune adapt" "synpo-finetune ppo"
+    "synpo-finetune strip" synpo-eval
     synpo-matrix synpo-render "synpo-matrix split" "synpo-matrix summary"
     "synpo-matrix table" "synpo-matrix compare" "synpo-matrix rows" "synpo-matrix cols" "synpo-matrix show"
     "synpo-matrix filter"
@@ -51,7 +52,7 @@ man_options() {
 @test "--version: on stdout, 0, name and number" {
     for command in "${COMMANDS[@]}"; do
         $command --version >out 2>err
-        grep -qxE "${command%% *} [0-9]+\.[0-9]+\.[0-9]+" out
+        grep -qxE "${command%% *} \(synpo\) [0-9]+\.[0-9]+\.[0-9]+( \(git [0-9a-f]{7,}(, modified)?\))?" out
         [ "$(wc -l <out)" -eq 1 ]
         [ ! -s err ]
     done

@@ -2,3 +2,4 @@
 #pragma once
 int adapt(int argc, char** argv);
 int ppo(int argc, char** argv);
+int strip(int argc, char** argv);

@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/cli/version.h"
 #include "base/error.h"
 #include "base/files/descriptor.h"
 #include "base/files/file_uses.h"
@@ -19,7 +20,10 @@
 
 namespace synpo {
 
-const char kVersion[] = "0.1.0";
+std::string version_text() {
+  const std::string commit = kCommit;
+  return kVersion + (commit.empty() ? "" : " (git " + commit + ")");
+}
 
 namespace {
 
@@ -252,8 +256,9 @@ void Options::take_letters(const std::string& word, Words& words) {
 
 std::vector<std::string> Options::parse(int argc, char** argv, int least, int most) {
   add(Kind::kFlag, 'h', "help", "", "this text", [this](const std::string&) { print_and_exit(usage()); });
-  add(Kind::kFlag, 0, "version", "", "the version",
-      [this](const std::string&) { print_and_exit(tool_.substr(0, tool_.find(' ')) + " " + kVersion + "\n"); });
+  add(Kind::kFlag, 0, "version", "", "the version", [this](const std::string&) {
+    print_and_exit(tool_.substr(0, tool_.find(' ')) + " (synpo) " + version_text() + "\n");
+  });
   std::vector<std::string> operands;
   Words words{argv + std::min(argc, 1), argv + argc};
   while (const char* next = words.take()) {

@@ -13,8 +13,6 @@
 
 namespace synpo {
 
-extern const char kVersion[];
-
 class Options {
  public:
   // `synopsis` is what follows the tool's name; `purpose` one or two lines for --help.

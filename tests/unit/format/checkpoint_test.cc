@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "base/cli/version.h"
 #include "base/hash.h"
 #include "format/safetensors.h"
 #include "helpers/table_helpers.h"
@@ -100,6 +102,39 @@ TEST(Checkpoint, TheHashIsOfWhatEvaluationNeeds) {
   EXPECT_EQ(checkpoint_of(format_checkpoint(c)).weights_hash(), hash);
   c.file.add("theta", {2}, other, 2);
   EXPECT_NE(c.weights_hash(), hash);
+}
+
+TEST(Checkpoint, HalvesAreTheNearestOfWhatTheyCanHold) {
+  Checkpoint c = small_checkpoint();
+  const float weights[4] = {1, 1.0f / 3, -1e-9f, 65504}, large[2] = {1, 65505}, broken[2] = {NAN, 1};
+  c.file.add("weights", {2, 2}, weights, 4);
+  c.file.add("bias", {4}, weights, 4);
+  c.file.add("large", {1, 2}, large, 2);
+  c.file.add("broken", {1, 2}, broken, 2);
+  const int64_t whole[1] = {3};
+  c.file.add("whole", {1, 1}, whole, 1);
+  c.halve();
+  const Checkpoint read = checkpoint_of(format_checkpoint(c));
+  EXPECT_EQ(read.file.tensors.at("weights").type, TensorType::kF16);
+  EXPECT_EQ(read.file.tensors.at("weights").shape, (std::vector<int64_t>{2, 2}));
+  EXPECT_EQ(read.file.get<float>("weights"), (std::vector<float>{1, 0.333251953125f, -0.0f, 65504}));
+  EXPECT_EQ(read.file.get<float>("bias"), (std::vector<float>{1, 1.0f / 3, -1e-9f, 65504}));
+  for (const char* name : {"bias", "large", "broken"})
+    EXPECT_EQ(read.file.tensors.at(name).type, TensorType::kF32) << name;
+  EXPECT_EQ(read.file.get<int64_t>("whole")[0], 3);
+}
+
+TEST(Checkpoint, SaysWhichBuildWroteIt) {
+  EXPECT_EQ(checkpoint_of(format_checkpoint(small_checkpoint())).written_by, "synpo " + version_text());
+  // What an older build wrote says so until it is written again, and what the first release wrote says nothing.
+  SafeTensors file = tensors_of(format_checkpoint(small_checkpoint()));
+  file.metadata["written_by"] = "synpo 0.1.9";
+  Checkpoint older = checkpoint_of(format_safetensors(file));
+  EXPECT_EQ(older.written_by, "synpo 0.1.9");
+  EXPECT_NE(older.describe().find("synpo 0.1.9"), std::string::npos);
+  EXPECT_EQ(checkpoint_of(format_checkpoint(older)).written_by, "synpo " + version_text());
+  file.metadata.erase("written_by");
+  EXPECT_EQ(checkpoint_of(format_safetensors(file)).written_by, "");
 }
 
 // The small checkpoint with one entry of its metadata replaced, or taken away.

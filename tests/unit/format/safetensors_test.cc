@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -81,6 +82,34 @@ TEST(SafeTensors, WhatIsAskedForMustBeThere) {
   EXPECT_EQ(thrown([&] { file.meta("y"); }), "65 no metadata 'y'");
 }
 
+// 1, -0, the largest, the smallest, 1/3 and infinity, as the IEEE formats have them.
+TEST(SafeTensors, NumbersOfTwoBytesAreReadAsFloats) {
+  const uint16_t halves[6] = {0x3c00, 0x8000, 0x7bff, 0x0001, 0x3555, 0x7c00};
+  const uint16_t brains[6] = {0x3f80, 0x8000, 0x7f7f, 0x0001, 0x3eab, 0x7f80};
+  const auto floats_of = [](const char* type, const uint16_t* bits) {
+    std::string file =
+        safetensors(concat(R"({"t":{"dtype":")", type, R"(","shape":[2,3],"data_offsets":[0,12]}})"), 12);
+    std::memcpy(file.data() + file.size() - 12, bits, 12);
+    return tensors_of(file).get<float>("t");
+  };
+  const std::vector<float> of_halves = floats_of("F16", halves), of_brains = floats_of("BF16", brains);
+  EXPECT_EQ(of_halves[0], 1.0f);
+  EXPECT_EQ(std::bit_cast<uint32_t>(of_halves[1]), 0x80000000u);
+  EXPECT_EQ(of_halves[2], 65504.0f);
+  EXPECT_EQ(of_halves[3], 0x1p-24f);
+  EXPECT_EQ(of_halves[4], 0.333251953125f);
+  EXPECT_FALSE(std::isfinite(of_halves[5]));
+  EXPECT_EQ(of_brains[0], 1.0f);
+  EXPECT_EQ(std::bit_cast<uint32_t>(of_brains[1]), 0x80000000u);
+  EXPECT_EQ(of_brains[2], 0x1.fep127f);
+  EXPECT_EQ(of_brains[3], 0x1p-133f);
+  EXPECT_EQ(of_brains[4], 0.333984375f);
+  EXPECT_FALSE(std::isfinite(of_brains[5]));
+  SafeTensors file;
+  file.add("t", {1}, reinterpret_cast<const Half*>(halves), 1);
+  EXPECT_EQ(thrown([&] { file.get<double>("t"); }), "65 tensor 't': found type F16, expected F64");
+}
+
 TEST(SafeTensors, EveryTruncationIsRefused) {
   const std::string bytes = format_safetensors(small_file());
   EXPECT_EQ(tensors_refused(""), "65 cannot read IN: it is empty");
@@ -140,10 +169,10 @@ TEST(SafeTensors, RefusesBadTensors) {
   const std::string start = "65 cannot read IN: tensor 't': ";
   EXPECT_EQ(tensors_refused(safetensors(R"({"t":3})", 0)), start + "expected dtype, shape and data_offsets");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[2])"), start + "expected dtype, shape and data_offsets");
-  EXPECT_EQ(tensor_refused(R"("dtype":"BF16","shape":[4],"data_offsets":[0,8])"),
-            start + "type '\"BF16\"', this build reads F16, F32, F64, I32, I64, U8 and U64");
+  EXPECT_EQ(tensor_refused(R"("dtype":"BF15","shape":[4],"data_offsets":[0,8])"),
+            start + "type '\"BF15\"', this build reads BF16, F16, F32, F64, I32, I64, U8 and U64");
   EXPECT_EQ(tensor_refused(R"("dtype":4,"shape":[4],"data_offsets":[0,8])"),
-            start + "type '4', this build reads F16, F32, F64, I32, I64, U8 and U64");
+            start + "type '4', this build reads BF16, F16, F32, F64, I32, I64, U8 and U64");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":2,"data_offsets":[0,8])"),
             start + "shape is no array of at most 8 numbers");
   EXPECT_EQ(tensor_refused(R"("dtype":"F32","shape":[1,1,1,1,1,1,1,1,2],"data_offsets":[0,8])"),
