@@ -72,6 +72,10 @@ void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, cons
     for (size_t i = 0; i < 2 * steps; ++i)
       if (bytes[at + i] >= world.actions()) bad();
     at += 2 * steps;
+    // From a state after the end the expert may know no way.
+    WorldState state = e.start;
+    for (size_t i = 0; i < steps; ++i)
+      if (world.step(e.pair, state, e.actions[i]).ended() && i + 1 < steps) bad();
     episodes_.push_back(std::move(e));
   }
   if (episodes_.size() > capacity_ || serials_.size() != episodes_.size()) bad();

@@ -77,6 +77,11 @@ TEST(Memory, RefusesWhatNoMemoryWrote) {
               malformed)
         << at;
   }
+  ReplayMemory after_its_end(5);
+  Episode longer = expert({0, 0}, 0);
+  for (std::vector<uint8_t>* actions : {&longer.actions, &longer.labels}) actions->push_back(0);
+  after_its_end.add(longer);
+  EXPECT_EQ(refused([&](SafeTensors& file) { file = saved(after_its_end); }), malformed);
   const uint64_t serials[4] = {0, 1, 2, 3};
   EXPECT_EQ(refused([&](SafeTensors& file) { file.add("m/serials", {4}, serials, 4); }), malformed);
   for (const uint64_t added : {0, 2, 4, 100})
