@@ -5,6 +5,7 @@
 #include "base/cli/options.h"
 #include "base/error.h"
 #include "engine/torch_engine.h"
+#include "format/trajectory.h"
 #include "learn/finite.h"
 #include "play/episode.h"
 #include "play/model.h"
@@ -18,6 +19,7 @@ constexpr Advice kNameFolder = {kNoSource, "{}: name their folder with -w kitche
 constexpr Advice kNameOtherFolder = {kOtherSource, "{}, expected -w kitchen:DIR"};
 constexpr Advice kLeaveWorld = {kNeedsNoSource, "{}: -w is for those that lie in files of their own"};
 constexpr Advice kBuildPlugin = {kNoPlugin, "{}: make torch builds it (synpo(7))"};
+constexpr Advice kWriteEnd = {kNoEnd, "{} (synpo-gen-expert --end writes one: was the stream cut off?)"};
 constexpr Advice kSmallerRate = {kNotFinite, "{}: try a smaller --lr"};
 
 inline std::string words(const TestedStart& start) {

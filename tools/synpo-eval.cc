@@ -1,5 +1,6 @@
 // A checkpoint on stdin, its success matrix on stdout.
 #include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -42,7 +43,10 @@ void note_new_pairs(const Matrix& matrix) {
 class Results {
  public:
   // No matrix where the record takes its place on stdout, or where none is wanted.
-  Results(const std::string& output_path, bool output_given, const std::string& record_path, bool wants_matrix) {
+  // `says_end`: the record's last line says how many episodes it has.
+  Results(const std::string& output_path, bool output_given, const std::string& record_path, bool says_end,
+          bool wants_matrix)
+      : says_end_(says_end) {
     const bool records_to_stdout = record_path == "-";
     if (records_to_stdout && output_path == "-" && output_given)
       fail(Exit::kUsage, "matrix and trajectories cannot both go to stdout");
@@ -53,11 +57,13 @@ class Results {
     if (!record_) return nullptr;
     return [this](const Trajectory& trajectory) {
       record_->write(format_trajectory(trajectory) + "\n");
+      ++recorded_;
       if (!output_) record_->check();
     };
   }
   bool have_matrix() const { return output_.has_value(); }
   void finish(const Matrix& matrix) {
+    if (record_ && says_end_) record_->write(format_end(recorded_) + "\n");
     if (record_) record_->finish();
     if (output_) {
       write_matrix(*output_, matrix);
@@ -67,6 +73,8 @@ class Results {
   }
 
  private:
+  bool says_end_;
+  uint64_t recorded_ = 0;
   std::optional<SideOutput> record_;
   std::optional<Output> output_;
 };
@@ -77,7 +85,7 @@ int body(int argc, char** argv) {
   plan.temperature = kTemperature;  // unless the method has another
   int threads = 0;
   DeviceOptions device;
-  bool describe = false, quiet = false;
+  bool says_end = false, describe = false, quiet = false;
   Options options("synpo-eval", "[-p PAIRS] [-n EPISODES] [OPTION]... < CHECKPOINT > MATRIX",
                   "Runs the policy of a checkpoint on every pair and counts successes.");
   options.text('c', "checkpoint", "FILE", "the checkpoint", checkpoint_path)
@@ -95,6 +103,7 @@ int body(int argc, char** argv) {
       .text(0, "record", "FILE",
             "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix",
             record_path)
+      .flag(0, "end", "the record's last line says how many episodes it has", says_end)
       .choice(0, "starts", "USE", "start states: evaluation, or training for records to learn from, without a matrix",
               starts, {"evaluation", "training"})
       .text('o', "output", "FILE", "write the matrix to FILE", output_path)
@@ -103,6 +112,7 @@ int body(int argc, char** argv) {
   options.parse(argc, argv);
   const bool for_training = starts == "training";
   if (for_training && record_path.empty()) fail(Exit::kUsage, "--starts training goes with --record");
+  if (says_end && record_path.empty()) fail(Exit::kUsage, "--end goes with --record");
   if (for_training && options.given("output"))
     fail(Exit::kUsage, "--starts training writes no matrix: -o does not go with it");
 
@@ -118,7 +128,7 @@ int body(int argc, char** argv) {
   plan.pairs_file = pairs_path;
   plan.pairs = pairs_path.empty() ? all_pairs(*world) : read_pairs(pairs_path);
 
-  Results results(output_path, options.given("output"), record_path, !for_training);
+  Results results(output_path, options.given("output"), record_path, says_end, !for_training);
   catch_stop_signals();
   Parallel parallel(threads);
   compute_on(device, parallel, model);

@@ -17,6 +17,7 @@ int body(int argc, char** argv) {
         "embeddings of new environments and tasks from a few demonstrations",
         adapt,
         {kSeeWorld,
+         kWriteEnd,
          kNameFolder,
          kNameOtherFolder,
          kSmallerRate,

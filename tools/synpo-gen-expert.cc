@@ -19,10 +19,12 @@ using namespace synpo;
 
 namespace {
 
-void relabel(const World& world, Output& output) {
+// The stream says its end where `says_end`, and then the one that it comes from must have said it.
+void relabel(const World& world, Output& output, bool says_end) {
   Input input("-");
+  TrajectoryLines lines(input);
   std::string line;
-  while (input.line(line)) {
+  while (lines.next(line)) {
     stop_if_asked();
     try {
       output.write(format_trajectory(relabelled(world, parse_trajectory(line, kStepLimit))) + "\n");
@@ -30,17 +32,20 @@ void relabel(const World& world, Output& output) {
       input.bad_line(error);
     }
   }
+  if (!says_end) return;
+  lines.check_end();
+  output.write(format_end(lines.count()) + "\n");
 }
 
 int gen_expert(int argc, char** argv) {
   std::string world_name = "gridworld", pairs_path, output_path = "-";
   ExpertStream stream;
   int64_t count = 0;
-  bool relabel_stream = false, quiet = false;
-  Options options(
-      "synpo-gen-expert",
-      "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [-w WORLD] [-o FILE] < TRAJECTORIES",
-      "Writes trajectories of the shortest-path expert, a JSON object a line.");
+  bool relabel_stream = false, says_end = false, quiet = false;
+  Options options("synpo-gen-expert",
+                  "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [--end] [-w WORLD] [-o FILE] < "
+                  "TRAJECTORIES",
+                  "Writes trajectories of the shortest-path expert, a JSON object a line.");
   options
       .text('p', "pairs", "FILE", "pairs to draw from: TSV env, task, seen; rows with seen = 1 (all pairs)", pairs_path)
       .integer('n', "count", "N", "trajectories, each of a random pair; 0: until the reader goes away", count, 0,
@@ -52,6 +57,7 @@ int gen_expert(int argc, char** argv) {
             stream.noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
+      .flag(0, "end", "a last line says how many trajectories there are (--relabel: if it did so there)", says_end)
       .text('w', "world", "WORLD", alternatives(world_names()), world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .quiet(quiet);
@@ -60,13 +66,15 @@ int gen_expert(int argc, char** argv) {
     for (const char* other : {"pairs", "count", "per-pair", "noise", "seed", "window"})
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
   if (stream.per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
+  if (says_end && !relabel_stream && stream.per_pair == 0 && count == 0)
+    fail(Exit::kUsage, "--end goes with -n or --per-pair: a stream without an end never says it");
 
   catch_stop_signals();
   const std::unique_ptr<World> opened = open_world(world_name);
   const World& world = *opened;
   Output output(output_path, Output::Kind::kStream);
   if (relabel_stream) {
-    relabel(world, output);
+    relabel(world, output, says_end);
     output.finish();
     return 0;
   }
@@ -79,10 +87,11 @@ int gen_expert(int argc, char** argv) {
     progress.update(uint64_t(i + 1));
     stop_if_asked();
   }
+  if (says_end) output.write(format_end(uint64_t(total)) + "\n");
   output.finish();
   return 0;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) { return run_tool("synpo-gen-expert", argc, argv, gen_expert, {kSeeWorld}); }
+int main(int argc, char** argv) { return run_tool("synpo-gen-expert", argc, argv, gen_expert, {kSeeWorld, kWriteEnd}); }

@@ -46,7 +46,8 @@ int body(int argc, char** argv) {
       .text('w', "world", "WORLD", alternatives(world_names()), s.world)
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
       .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)
-      .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX);
+      .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX)
+      .flag(0, "expect-end", "a stream that does not say its end in a last line is an error", s.expect_end);
   s.add_to(options);
   s.recipe.add_to(options);
   options.parse(argc, argv);
@@ -73,6 +74,7 @@ int body(int argc, char** argv) {
 int main(int argc, char** argv) {
   return run_tool("synpo-train", argc, argv, body,
                   {kSeeWorld,
+                   kWriteEnd,
                    kNameFolder,
                    kNameOtherFolder,
                    kLeaveWorld,

@@ -13,7 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr char kFormat[] = "synpo-trajectory";
+constexpr char kFormat[] = "synpo-trajectory", kEndFormat[] = "synpo-end";
 constexpr int kPlaceLimit = 1 << 20;
 
 const Json& need(const Json& object, const char* field) {
@@ -63,6 +63,12 @@ std::vector<uint8_t> action_list(const Json& value, const char* field, int step_
   return list;
 }
 
+void check_version(const Json& object) {
+  const int64_t version = whole("version", need(object, "version"), 0, INT32_MAX);
+  if (version < 1 || version > kTrajectoryVersion)
+    fail(Exit::kData, "version ", version, ", this build reads 1 to ", kTrajectoryVersion);
+}
+
 }  // namespace
 
 std::string format_trajectory(const Trajectory& t) {
@@ -105,9 +111,7 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
   }();
   if (!object.is_object()) fail(Exit::kData, "found ", quoted(line), ", expected a JSON object");
   if (text(object, "format") != kFormat) wrong("format", object["format"], kFormat);
-  const int64_t version = whole("version", need(object, "version"), 0, INT32_MAX);
-  if (version < 1 || version > kTrajectoryVersion)
-    fail(Exit::kData, "version ", version, ", this build reads 1 to ", kTrajectoryVersion);
+  check_version(object);
   Trajectory t;
   t.world = name(object, "world");
   t.rules = int(whole("rules", need(object, "rules"), 0, INT32_MAX));
@@ -144,6 +148,52 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
   t.terminated = truth(object, "terminated");
   t.truncated = truth(object, "truncated");
   return t;
+}
+
+std::string format_end(uint64_t trajectories) {
+  nlohmann::ordered_json line;
+  line["format"] = kEndFormat;
+  line["version"] = kTrajectoryVersion;
+  line["trajectories"] = trajectories;
+  return line.dump();
+}
+
+bool TrajectoryLines::next(std::string& line) {
+  while (input_.line(line)) {
+    if (is_end(line)) continue;
+    ++count_;
+    return true;
+  }
+  if (ends_ > 0 && said_ != count_)
+    fail(Exit::kData, input_.name(), ": found ", count_, " trajectories, expected ", said_,
+         ends_ == 1 ? " as its end says" : " as its ends say", ": lines are missing, or some were chosen");
+  return false;
+}
+
+void TrajectoryLines::check_end() const {
+  if (ends_ == 0)
+    fail(Exit::kData, kNoEnd, input_.name(), ": it ended after ", count_,
+         " trajectories, expected a last line that says its end");
+}
+
+// Takes it in.
+bool TrajectoryLines::is_end(const std::string& line) {
+  if (line.find(kEndFormat) == std::string::npos) return false;
+  Json object;
+  try {
+    object = parse_json(line);
+  } catch (const Error&) {
+    return false;  // parse_trajectory() will say what it is
+  }
+  if (!object.is_object() || !object.contains("format") || object["format"] != kEndFormat) return false;
+  try {
+    check_version(object);
+    said_ += uint64_t(whole("trajectories", need(object, "trajectories"), 0, INT64_MAX - int64_t(said_)));
+  } catch (const Error& error) {
+    input_.bad_line(error);
+  }
+  ++ends_;
+  return true;
 }
 
 }  // namespace synpo

@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
+#include "base/files/io.h"
+
 namespace synpo {
 
 constexpr int kTrajectoryVersion = 1;
@@ -33,5 +36,30 @@ std::string format_trajectory(const Trajectory& trajectory);
 // Lengths must agree; actions are below kMostActions, there are at most `step_limit` steps and at least one. Whether a
 // world has them, replay() knows (play/episode.h).
 Trajectory parse_trajectory(const std::string& line, int step_limit);
+
+// The line, without the newline, that says at the end of a stream how many trajectories it has.
+std::string format_end(uint64_t trajectories);
+
+// A stream does not say its end, as it should.
+constexpr Cause kNoEnd{"a stream that does not say its end"};
+
+// The lines of a stream that hold trajectories. Lines that say the end are passed over; a stream of several with an end
+// each, one after the other or mixed, has the sum of what these say.
+class TrajectoryLines {
+ public:
+  explicit TrajectoryLines(Input& input) : input_(input) {}
+
+  // The next one; false at the end of the stream. Throws kData there for a stream that says that it has more or fewer,
+  // and for a malformed end, with its line.
+  bool next(std::string& line);
+  uint64_t count() const { return count_; }  // of trajectories so far
+  // At the end of the stream: throws kData (kNoEnd) where it did not say its end.
+  void check_end() const;
+
+ private:
+  bool is_end(const std::string& line);
+  Input& input_;
+  uint64_t count_ = 0, said_ = 0, ends_ = 0;
+};
 
 }  // namespace synpo

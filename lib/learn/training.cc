@@ -79,6 +79,7 @@ void Training::check_length() {
   const uint64_t expected = uint64_t(settings_.expect), length = stream_->length_up_to(expected);
   if (length < expected)
     fail(Exit::kData, "the stream ended after ", length, " trajectories, expected ", settings_.expect);
+  if (settings_.expect_end) stream_->check_end();
 }
 
 void Training::begin() {

@@ -33,7 +33,8 @@ struct TrainingSettings : LongRun {
   // The limit: so many updates in all, or as many as fit into a time; 0: not given, for a resumed run alone.
   int64_t updates = 0;
   double limit_s = 0;
-  int64_t expect = 0;  // trajectories that the stream must have
+  int64_t expect = 0;       // trajectories that the stream must have
+  bool expect_end = false;  // the stream must say its end
   // Says that a limit in time has been turned into a number of updates.
   std::function<std::string(int64_t total)> told = nullptr;
   // Says that the run learns from the starts that success matrices are made of.

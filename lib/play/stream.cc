@@ -22,16 +22,18 @@ bool begins_as_tested(const World& world, const Trajectory& t, const Episode& ep
 }  // namespace
 
 TrajectoryStream::TrajectoryStream(Input& input, const World& world, std::vector<EnvTask> seen, int window)
-    : input_(input), world_(world), seen_(std::move(seen)),
+    : input_(input), from_(input), world_(world), seen_(std::move(seen)),
       allowed_(size_t(world.envs()) * world.task_count(), seen_.empty()), window_(window) {
   for (const EnvTask& pair : seen_) allowed_[world.pair_number(pair)] = true;
 }
 
+bool TrajectoryStream::take_line() {
+  ended_ = ended_ || !from_.next(line_);
+  return !ended_;
+}
+
 std::optional<Episode> TrajectoryStream::next() {
-  if (ended_ || !input_.line(line_)) {
-    ended_ = true;
-    return std::nullopt;
-  }
+  if (!take_line()) return std::nullopt;
   try {
     const Trajectory trajectory = parse_trajectory(line_, kStepLimit);
     Episode episode = replay(world_, trajectory);
@@ -43,7 +45,7 @@ std::optional<Episode> TrajectoryStream::next() {
     ++lines_;
     hash_.add(line_).add("\n");
     if (!tested_start_ && begins_as_tested(world_, trajectory, episode))
-      tested_start_ = {lines_, trajectory.seed, trajectory.episode};
+      tested_start_ = {input_.line_number(), trajectory.seed, trajectory.episode};
     return episode;
   } catch (const Error& error) {
     input_.bad_line(error);
@@ -52,13 +54,19 @@ std::optional<Episode> TrajectoryStream::next() {
 
 uint64_t TrajectoryStream::length_up_to(uint64_t lines) {
   uint64_t read = lines_;
-  while (read < lines && !ended_ && input_.line(line_)) ++read;
+  while (read < lines && take_line()) ++read;
   return read;
+}
+
+void TrajectoryStream::check_end() {
+  while (take_line()) {
+  }
+  from_.check_end();
 }
 
 void TrajectoryStream::skip(uint64_t lines, uint64_t hash) {
   for (; lines_ < lines; ++lines_) {
-    if (!input_.line(line_))
+    if (!take_line())
       fail(Exit::kData, input_.name(), ": it ends at line ", lines_, ", but the checkpoint has read ", lines,
            " lines: another stream?");
     hash_.add(line_).add("\n");

@@ -71,7 +71,7 @@ int adapt(int argc, char** argv) {
   uint64_t seed = 1;
   int64_t updates = 10000;
   int threads = 0;
-  bool force = false, quiet = false;
+  bool expect_end = false, force = false, quiet = false;
   DeviceOptions device;
   Options options(
       "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
@@ -90,6 +90,7 @@ int adapt(int argc, char** argv) {
       .real(0, "task-loss", "X", "weight of task disentanglement", adaptation.losses.task, 0, 1e6)
       .real(0, "embedding-sd", "X", "new embeddings start as N(0, X^2); 0: Xavier uniform", adaptation.embedding_sd, 0,
             1000)
+      .flag(0, "expect-end", "a stream that does not say its end in a last line is an error", expect_end)
       .seed(seed)
       .threads(threads);
   device.add_to(options);
@@ -113,6 +114,7 @@ int adapt(int argc, char** argv) {
   Input input("-");
   TrajectoryStream stream(input, *world, {}, model.window);
   while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
+  if (expect_end) stream.check_end();
   if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
   Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
   if (stream.tested_start()) progress.warn(words(*stream.tested_start()));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "base/random.h"
@@ -228,6 +230,63 @@ TEST(GoldenV1, Trajectories) {
   EXPECT_TRUE(second.success && second.terminated);
   EXPECT_FALSE(second.truncated);
   EXPECT_EQ(format_trajectory(first) + "\n" + format_trajectory(second) + "\n", text);
+}
+
+// The lines that hold trajectories, joined by spaces, of a stream of these.
+std::string lines_of(const std::string& text, bool must_end = false) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  std::fputs(text.c_str(), file.get());
+  std::rewind(file.get());
+  Input input(fileno(file.get()), "input");
+  TrajectoryLines lines(input);
+  std::string line, all;
+  while (lines.next(line)) all += line + " ";
+  if (must_end) lines.check_end();
+  return all;
+}
+
+TEST(TrajectoryLines, AnEndCountsWhatCame) {
+  const std::string end = R"({"format":"synpo-end","version":1,"trajectories":2})";
+  EXPECT_EQ(format_end(2), end);
+  EXPECT_EQ(lines_of("a\nb\n" + end + "\n", true), "a b ");
+  // As any program may write it, without the last newline, in any place, and several.
+  EXPECT_EQ(lines_of("a\nb\n{ \"trajectories\": 2, \"version\": 1, \"format\": \"synpo-end\" }", true), "a b ");
+  EXPECT_EQ(lines_of(end + "\na\nb\n", true), "a b ");
+  EXPECT_EQ(lines_of("a\n" + format_end(1) + "\nb\nc\n" + format_end(2) + "\n", true), "a b c ");
+  EXPECT_EQ(lines_of(format_end(0), true), "");
+}
+
+TEST(TrajectoryLines, AStreamNeedNotSayItsEnd) {
+  EXPECT_EQ(lines_of("a\nb\n"), "a b ");
+  EXPECT_EQ(thrown([] { lines_of("a\nb\n", true); }),
+            "65 input: it ended after 2 trajectories, expected a last line that says its end");
+  EXPECT_EQ(thrown([] { lines_of("", true); }),
+            "65 input: it ended after 0 trajectories, expected a last line that says its end");
+}
+
+TEST(TrajectoryLines, MissingLinesAreNoticed) {
+  EXPECT_EQ(thrown([] { lines_of("a\n" + format_end(2)); }),
+            "65 input: found 1 trajectories, expected 2 as its end says: lines are missing, or some were chosen");
+  EXPECT_EQ(thrown([] { lines_of("a\nb\nc\n" + format_end(2)); }),
+            "65 input: found 3 trajectories, expected 2 as its end says: lines are missing, or some were chosen");
+  EXPECT_EQ(thrown([] { lines_of("a\n" + format_end(1) + "\nb\n" + format_end(2)); }),
+            "65 input: found 2 trajectories, expected 3 as its ends say: lines are missing, or some were chosen");
+}
+
+TEST(TrajectoryLines, AMalformedEndIsRefusedAndAnotherLineIsNone) {
+  const auto bad = [](const std::string& line) { return thrown([&] { lines_of("a\n" + line + "\n"); }); };
+  EXPECT_EQ(bad(R"({"format":"synpo-end","version":2,"trajectories":1})"),
+            "65 input: line 2: version 2, this build reads 1 to 1");
+  EXPECT_EQ(bad(R"({"format":"synpo-end","version":1})"), "65 input: line 2: no field 'trajectories'");
+  EXPECT_EQ(
+      bad(R"({"format":"synpo-end","version":1,"trajectories":-1})"),
+      "65 input: line 2: field 'trajectories': found '-1', expected a whole number from 0 to 9223372036854775807");
+  const std::string most = format_end(INT64_MAX);
+  EXPECT_EQ(bad(most + "\n" + most),
+            "65 input: line 3: field 'trajectories': found '9223372036854775807', expected a whole number from 0 to 0");
+  EXPECT_EQ(lines_of(R"({"env":"synpo-end"})"), R"({"env":"synpo-end"} )");
+  EXPECT_EQ(lines_of("synpo-end"), "synpo-end ");
+  EXPECT_EQ(lines_of(R"({"format":"synpo-end)"), R"({"format":"synpo-end )");
 }
 
 }  // namespace
