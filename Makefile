@@ -13,10 +13,12 @@ ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -
                -pthread -MMD -MP -Ilib -Itools $(INCLUDES) $(if $(KIT),-isystem $(KIT)) \
                -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
-DRAW_LIBS     = -lopencv_dnn -lopencv_freetype -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core -lgif
+CAIRO_CFLAGS  := -isystem /usr/include/cairo -isystem /usr/include/freetype2 -isystem /usr/include/harfbuzz
+DRAW_LIBS     = -lopencv_dnn -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core \
+                -lcairo -lharfbuzz -lfreetype -lz -lgif
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-# DRAW=no leaves out pictures, and with them OpenCV and giflib.
+# DRAW=no leaves out pictures, and with them OpenCV, cairo and giflib.
 LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' \
             $(if $(filter no,$(DRAW)),-not '(' -path 'lib/draw/*/*' -not -path 'lib/draw/terminal/*' ')'))
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
@@ -33,8 +35,8 @@ TEST_SRC := $(shell find tests/unit -name '*.cc')
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
 MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
 
-PACKAGES := g++ make libeigen3-dev libopencv-dev libgif-dev nlohmann-json3-dev fonts-dejavu-core \
-            libgtest-dev bats jq man-db python3-numpy
+PACKAGES := g++ make libeigen3-dev libopencv-dev libcairo2-dev libharfbuzz-dev libgif-dev nlohmann-json3-dev \
+            fonts-dejavu-core libgtest-dev bats jq man-db python3-numpy poppler-utils
 
 # LibTorch on Debian takes any BLAS; with the reference one it crawls.
 TORCH_PACKAGES := libtorch-dev libopenblas0-openmp
@@ -141,8 +143,9 @@ $(TEST_OBJ): INCLUDES += -Itests/unit
 # Eigen, the yardstick there, knows no dispatch at run time.
 $(B)/tests/bench/synpo-bench.o: OPTIMISE = -O3 -march=native
 
-# Only these, and the tests of drawing, see OpenCV.
-$(B)/lib/draw/canvas/%.o $(B)/lib/draw/video/%.o $(B)/lib/draw/vision/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(OPENCV_CFLAGS)
+# Only these see cairo, and OpenCV.
+$(B)/lib/draw/canvas/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(CAIRO_CFLAGS)
+$(B)/lib/draw/video/%.o $(B)/lib/draw/vision/%.o: INCLUDES += $(OPENCV_CFLAGS)
 
 # Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same
 # level.

@@ -1,4 +1,4 @@
-// synpo-render: matrices, curves, mazes, kitchens, views, episodes, embeddings and policies as PNG pictures.
+// synpo-render: matrices, curves, mazes, kitchens, views, episodes, embeddings and policies as pictures.
 #include "render/render.h"
 
 #include <cstddef>
@@ -42,7 +42,7 @@ int map(int argc, char** argv) {
   picture.add_ansi(options);
   picture.add_to(options);
   const auto names = options.parse(argc, argv, 0, 1000);
-  picture.check(options, {});
+  picture.settle(options);
   style.scale = picture.scale;
   const std::unique_ptr<const WorldFace> face = open_face(world);
   std::vector<int> envs(names.empty() ? size_t(face->world().envs()) : 0);
@@ -51,8 +51,10 @@ int map(int argc, char** argv) {
   Output output = picture.open();
   if (picture.ansi)
     finish(output, face->plans_text(envs, style, environment_colour(), terminal_width(output.is_stdout() ? 1 : -1)));
-  else
-    finish(output, face->draw_plans(envs, style, Font(picture.font)));
+  else {
+    const Font font(picture.font);
+    picture.finish(output, face->draw_plans(envs, style, font));
+  }
   return 0;
 }
 
@@ -74,23 +76,25 @@ int view(int argc, char** argv) {
       .call(0, "title", "TEXT", "title instead of environment, task and step", drawn(style.title));
   picture.add_to(options);
   options.parse(argc, argv);
+  picture.settle(options);
   style.scale = picture.scale;
   const std::unique_ptr<const WorldFace> face = open_face(world);
   if (!face->kind().has_window && options.given("window"))
     fail(Exit::kUsage, "--window is for ", environments_with(&FaceKind::has_window), ", but the world is ",
          quoted(world));
-  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  Output output = picture.open();
   const Font font(picture.font);
   const EnvTask pair = {env.empty() ? 0 : find_env(*face, env), task.empty() ? 0 : find_task(*face, task)};
   const Random random(uint64_t(seed), Purpose::kEpisodeStart, face->world().pair_number(pair), uint64_t(episode));
-  finish(output, draw_agent_view(*face, expert_film(face->world(), pair, random, steps, int(window)), style, font));
+  picture.finish(output,
+                 draw_agent_view(*face, expert_film(face->world(), pair, random, steps, int(window)), style, font));
   return 0;
 }
 
 int body(int argc, char** argv) {
   return run_commands("synpo-render",
                       "Draws success matrices, learning curves, mazes, kitchens, views, episodes, embeddings and "
-                      "policies as PNG; runs networks over views.",
+                      "policies as PNG, PDF or SVG; runs networks over views.",
                       {{"heatmap", "success matrices", heatmap, {{kSeveralMethods, "{}: choose one with --method"}}},
                        {"curves",
                         "run logs as curves",

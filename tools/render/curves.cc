@@ -104,6 +104,7 @@ int curves(int argc, char** argv) {
             [&](const std::string& text) { parse_curves_size(text, style); });
   picture.add_to(options);
   const std::vector<LabelledFiles> logs = labelled_files(options.parse(argc, argv, 0, 1000));
+  picture.settle(options);
   style.scale = picture.scale;
   style.band = band == "sd" ? Band::kSd : band == "range" ? Band::kRange : Band::kNone;
   if (rate > 0 && x != "minutes") fail(Exit::kUsage, "--rate is for -x minutes");
@@ -121,7 +122,7 @@ int curves(int argc, char** argv) {
                           : x == "states" || rate > 0 ? RunLogAxis::kStates
                                                       : RunLogAxis::kMinutes;
 
-  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  Output output = picture.open();
   const Font font(picture.font);
   std::vector<MethodRuns> methods;
   for (const LabelledFiles& method : logs) {
@@ -129,6 +130,6 @@ int curves(int argc, char** argv) {
     for (const std::string& path : method.paths)
       methods.back().runs.push_back(read_curves(path, axis, rate > 0 ? 1 / rate / 60 : 1, measure, y));
   }
-  finish(output, draw_curves(average_runs(methods, measure.parts, style.band, measure.percent), style, font));
+  picture.finish(output, draw_curves(average_runs(methods, measure.parts, style.band, measure.percent), style, font));
   return 0;
 }

@@ -66,9 +66,10 @@ int embedding(int argc, char** argv) {
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
   if (options.given("metric") && kind != "distance") fail(Exit::kUsage, "--metric is for --kind distance");
+  picture.settle(options);
   style.scale = picture.scale;
 
-  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  Output output = picture.open();
   const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
   const std::shared_ptr<const World> restored = world_of(checkpoint);
   const World& world = *restored;
@@ -107,9 +108,9 @@ int embedding(int argc, char** argv) {
                          marked.empty() ? "" : "; a task's mark: " + marked);
   const Font font(picture.font);
   if (kind == "pca")
-    finish(output, draw_embedding_map(panels, style, font));
+    picture.finish(output, draw_embedding_map(panels, style, font));
   else
-    finish(output, draw_embedding_distances(panels, metric == "cosine" ? Distance::kCosine : Distance::kEuclidean,
-                                            style, font));
+    picture.finish(output, draw_embedding_distances(
+                               panels, metric == "cosine" ? Distance::kCosine : Distance::kEuclidean, style, font));
   return 0;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "base/cli/options.h"
 #include "base/error.h"
@@ -53,15 +54,14 @@ void write_frames(const std::string& path, int steps, const Frame& frame) {
   folder.finish();
 }
 
+void write_gif(Output& output, double rate, int steps, const Frame& frame) {
+  finish(output, animated_gif(steps + 1, rate, [&](int i) {
+           stop_if_asked();
+           return frame(i);
+         }));
+}
+
 void write_video(const std::string& path, double rate, int steps, const Frame& frame) {
-  if (path.ends_with(".gif")) {
-    Output output(path, Output::Kind::kBinary);
-    finish(output, animated_gif(steps + 1, rate, [&](int i) {
-             stop_if_asked();
-             return frame(i);
-           }));
-    return;
-  }
   std::unique_ptr<Video> video;
   for (int i = 0; i <= steps; ++i) {
     stop_if_asked();
@@ -94,7 +94,7 @@ int episode(int argc, char** argv) {
       .text(0, "frames", "DIR", "a folder of numbered PNG files, one for the start and one after every step", frames)
       .text(0, "video", "FILE", "the same as a video: .gif, .avi, or .mp4, .mkv where OpenCV can", video)
       .real(0, "rate", "HZ", "the video's frames per second", rate, 0.1, 240);
-  picture.add_to(options);
+  picture.add_to(options, {"png", "pdf", "svg", "gif"});
   const auto operands = options.parse(argc, argv, 0, 1);
   const std::unique_ptr<const WorldFace> face = open_face(world_name);
   const bool draws_films = !frames.empty() || !video.empty();
@@ -102,14 +102,22 @@ int episode(int argc, char** argv) {
   if (ansi && !face->kind().has_text)
     fail(Exit::kUsage, "--ansi is for ", environments_with(&FaceKind::has_text), ", but the world is ",
          quoted(world_name));
-  if (draws_films && options.given("output"))
-    fail(Exit::kUsage, "--frames and --video take the place of the picture, but -o is given");
-  if (options.given("rate") && video.empty()) fail(Exit::kUsage, "--rate is for --video");
+  for (const char* option : {"output", "format"})
+    if (draws_films && options.given(option))
+      fail(Exit::kUsage, "--frames and --video take the place of the picture, but --", option, " is given");
+  if (ansi && options.given("format")) fail(Exit::kUsage, "--format is for a picture, not for --ansi");
+  if (video.ends_with(".gif")) {
+    picture.output = std::exchange(video, "");
+    picture.format = "gif";
+  }
+  if (!ansi) picture.settle(options);
+  const bool moves = picture.format == "gif";
+  if (options.given("rate") && video.empty() && !moves) fail(Exit::kUsage, "--rate is for --video and for a GIF");
   style.scale = picture.scale;
-  if (draws_films) catch_stop_signals();
+  if (draws_films || moves) catch_stop_signals();
 
   std::unique_ptr<Output> output;
-  if (!draws_films)
+  if (moves || !draws_films)
     output =
         std::make_unique<Output>(picture.output, ansi ? Output::Kind::kText : Output::Kind::kBinary, picture.force);
   Input input(operands.empty() ? "-" : operands[0]);
@@ -123,6 +131,10 @@ int episode(int argc, char** argv) {
   const Frame frame = [&](int moment) { return draw_episode_frame(*face, film, moment, style, *font); };
   if (!frames.empty()) write_frames(frames, film.steps(), frame);
   if (!video.empty()) write_video(video, rate, film.steps(), frame);
-  if (output) finish(*output, draw_episode(*face, film, style, *font));
+  if (moves) write_gif(*output, rate, film.steps(), frame);
+  if (output && !moves)
+    picture.finish(*output, draw_episode(*face, film, style, *font));
+  else
+    picture.say_missing(*font);
   return 0;
 }

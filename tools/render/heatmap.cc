@@ -100,7 +100,7 @@ int heatmap(int argc, char** argv) {
   picture.add_ansi(options);
   picture.add_to(options);
   const std::vector<LabelledFiles> files = labelled_files(options.parse(argc, argv, 0, 1000));
-  picture.check(options, {"margins", "no-values", "cell"});
+  picture.settle(options, {"margins", "no-values", "cell"});
   style.values = !no_values;
   style.scale = picture.scale;
   Output output = picture.open();
@@ -110,6 +110,7 @@ int heatmap(int argc, char** argv) {
     return 0;
   }
   const Font font(picture.font);
-  finish(output, draw_heatmap(arrange(read_panels(files, choice), grid_task_names(), tasks, envs), style, font));
+  picture.finish(output,
+                 draw_heatmap(arrange(read_panels(files, choice), grid_task_names(), tasks, envs), style, font));
   return 0;
 }

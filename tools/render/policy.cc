@@ -55,9 +55,10 @@ int policy(int argc, char** argv) {
       .call(0, "title", "TEXT", "title instead of maze and task", drawn(style.title));
   picture.add_to(options);
   const auto operands = options.parse(argc, argv, 0, 1);
+  picture.settle(options);
   style.scale = picture.scale;
 
-  Output output(picture.output, Output::Kind::kBinary, picture.force);
+  Output output = picture.open();
   const Checkpoint checkpoint = load_checkpoint(operands.empty() ? "-" : operands[0]);
   const std::shared_ptr<const World> world = world_of(checkpoint);
   const std::unique_ptr<const WorldFace> face = face_of(world);
@@ -83,6 +84,7 @@ int policy(int argc, char** argv) {
   if (style.title.empty())
     style.title = face->name(pair) + (model.is_seen(pair) ? " (seen)" : model.knows(pair) ? " (unseen)" : " (new)");
   style.caption = concat(model.method, ", ", model.updates, " updates. ", style.caption);
-  finish(output, face->draw_policy(pair, stages, style, Font(picture.font)));
+  const Font font(picture.font);
+  picture.finish(output, face->draw_policy(pair, stages, style, font));
   return 0;
 }

@@ -4,47 +4,33 @@
 #include <vector>
 
 #include "base/cli/options.h"
-#include "base/error.h"
 #include "base/files/io.h"
 #include "draw/canvas/canvas.h"
+#include "draw/canvas/font.h"
 #include "draw/face/world_face.h"
 
-// Every command takes these: where the picture goes, its size and its font; and --ansi, where the command can draw with
-// characters.
+// Every command takes these: where the picture goes, its format, size and font; and --ansi, where the command can draw
+// with characters. settle() comes after the command line is read, and before the others.
 struct PictureOptions {
-  std::string output = "-", font;
+  std::string output = "-", format, font;
   bool force = false, ansi = false;
-  double scale = 2;
+  double scale = 0;  // pixels per point
 
-  void add_to(synpo::Options& options) {
-    options.section("picture")
-        .text('o', "output", "FILE", "write the PNG to FILE", output)
-        .flag('f', "force", "write to a terminal too", force)
-        .real(0, "scale", "X", "pixels per point (text is about 9 points high)", scale, 0.25, 16)
-        .text(0, "font", "FILE", "TrueType font instead of DejaVu Sans", font);
-  }
+  void add_to(synpo::Options& options, std::vector<std::string> formats = {"png", "pdf", "svg"});
+  void add_ansi(synpo::Options& options);
+  // Chooses format and scale. Throws kUsage for a name that ends in no format, or in another than the one given, and
+  // for --ansi with an option that only a picture knows: those of the command named here, and format, size and font.
+  void settle(const synpo::Options& options, std::vector<const char*> not_ansi = {});
+  synpo::Output open() const;
+  // Writes it in its format, and says on standard error which characters its font lacks.
+  void finish(synpo::Output& output, const synpo::Canvas& canvas) const;
+  void say_missing(const synpo::Font& font) const;
 
-  void add_ansi(synpo::Options& options) {
-    options.flag(0, "ansi", "coloured blocks for a terminal, as text, instead of a PNG", ansi);
-  }
-  // Throws kUsage for --ansi with an option that only a PNG knows: those of the command, and the size and the font.
-  void check(const synpo::Options& options, std::vector<const char*> png_only) const {
-    png_only.insert(png_only.end(), {"scale", "font"});
-    for (const char* option : png_only)
-      if (ansi && options.given(option))
-        synpo::fail(synpo::Exit::kUsage, "--", option, " is for a PNG, not for --ansi");
-  }
-
-  synpo::Output open() const {
-    return synpo::Output(output, ansi ? synpo::Output::Kind::kText : synpo::Output::Kind::kBinary, force);
-  }
+ private:
+  std::vector<std::string> formats_;
 };
 
-inline void finish(synpo::Output& output, const std::string& text) {
-  output.write(text);
-  output.finish();
-}
-inline void finish(synpo::Output& output, const synpo::Canvas& canvas) { finish(output, canvas.png()); }
+void finish(synpo::Output& output, const std::string& bytes);
 
 // Files of one label: runs of one method, shards of one matrix.
 struct LabelledFiles {

@@ -3,53 +3,87 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "base/error.h"
+#include "base/text.h"
+#include "draw/canvas/cairo_surface.h"
+#include "draw/canvas/surface.h"
+#include "draw/canvas/svg_surface.h"
 
 namespace synpo {
 namespace {
 
-// Corners are given to OpenCV in 1/16 pixel; its pixel centres are whole numbers, ours lie at a half.
-constexpr int kShift = 4;
-
-cv::Point fixed_point(Point p) {
-  return {int(std::lround((p.x - 0.5) * (1 << kShift))), int(std::lround((p.y - 0.5) * (1 << kShift)))};
+// A name of a file may be any bytes.
+std::string valid_text(std::string text) {
+  for (size_t bad; (bad = first_bad_byte(text)) != std::string::npos;) text.replace(bad, 1, "\uFFFD");
+  return text;
 }
 
-cv::Scalar scalar(Rgb colour) { return cv::Scalar(colour.b, colour.g, colour.r); }
+Box common(const Box& a, const Box& b) {
+  const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+  return {x, y, std::min(a.right(), b.right()) - x, std::min(a.bottom(), b.bottom()) - y};
+}
+
+double area_of(double width, double height) { return std::max(width, 0.0) * std::max(height, 0.0); }
 
 }  // namespace
 
-struct Canvas::Pixels {
-  cv::Mat bgr;
-};
-
-Canvas::Canvas(int width, int height, const Font& font) : pixels_(std::make_unique<Pixels>()), font_(font) {
+Canvas::Canvas(int width, int height, const Font& font, double scale)
+    : width_(width), height_(height), scale_(scale), font_(font) {
   constexpr int kLongest = 30000;
   constexpr int64_t kMost = 400'000'000;
   if (width > kLongest || height > kLongest || int64_t{width} * height > kMost)
     fail(Exit::kUsage, kPictureTooLarge, "the picture would have ", width, " x ", height, " pixels");
-  pixels_->bgr = cv::Mat(height, width, CV_8UC3, cv::Scalar::all(255));
 }
 
 Canvas::~Canvas() = default;
 Canvas::Canvas(Canvas&&) noexcept = default;
 
-int Canvas::width() const { return pixels_->bgr.cols; }
-int Canvas::height() const { return pixels_->bgr.rows; }
-
-Rgb Canvas::at(int x, int y) const {
-  const cv::Vec3b& pixel = pixels_->bgr.at<cv::Vec3b>(y, x);
-  return {pixel[2], pixel[1], pixel[0]};
-}
+void Canvas::draw(std::function<void(Surface&)> shape) { shapes_.push_back(std::move(shape)); }
 
 void Canvas::fill(const Box& box, Rgb colour) {
-  if (box.width <= 0 || box.height <= 0) return;
-  const cv::Rect whole(0, 0, width(), height());
-  pixels_->bgr(cv::Rect(box.x, box.y, box.width, box.height) & whole).setTo(scalar(colour));
+  const Box seen = common(box, whole());
+  if (seen.width <= 0 || seen.height <= 0) return;
+  draw([=](Surface& to) { to.boxes({seen}, colour); });
+}
+
+void Canvas::fill(const std::vector<Box>& boxes, Rgb colour) {
+  std::vector<Box> seen;
+  for (const Box& box : boxes)
+    if (const Box part = common(box, whole()); part.width > 0 && part.height > 0) seen.push_back(part);
+  if (seen.empty()) return;
+  draw([seen = std::move(seen), colour](Surface& to) { to.boxes(seen, colour); });
+}
+
+// On a ground of the colour that is most of it, what has another one: no seam shows paper.
+void Canvas::squares(int x, int y, int side, int columns, const std::vector<Rgb>& colours) {
+  const auto key = [](Rgb colour) { return std::tuple(colour.r, colour.g, colour.b); };
+  std::map<std::tuple<uint8_t, uint8_t, uint8_t>, std::vector<Box>> boxes;
+  std::map<std::tuple<uint8_t, uint8_t, uint8_t>, size_t> counts;
+  const int count = int(colours.size());
+  for (int i = 0; i < count;) {
+    int end = i + 1;
+    while (end < count && end % columns != 0 && colours[size_t(end)] == colours[size_t(i)]) ++end;
+    boxes[key(colours[size_t(i)])].push_back({x + i % columns * side, y + i / columns * side, (end - i) * side, side});
+    counts[key(colours[size_t(i)])] += size_t(end - i);
+    i = end;
+  }
+  if (boxes.empty()) return;
+  const auto most =
+      std::max_element(counts.begin(), counts.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto colour_of = [](const auto& of) { return Rgb{std::get<0>(of), std::get<1>(of), std::get<2>(of)}; };
+  fill({x, y, std::min(columns, count) * side, (count + columns - 1) / columns * side}, colour_of(most->first));
+  for (const auto& [colour, of_it] : boxes)
+    if (colour != most->first) fill(of_it, colour_of(colour));
+}
+
+// Each row reaches down to the end, lest seams show.
+void Canvas::shades(const Box& box, const std::function<Rgb(double share)>& colour) {
+  for (int row = 0; row < box.height; ++row)
+    fill({box.x, box.y + row, box.width, box.height - row}, colour(double(row) / std::max(1, box.height - 1)));
 }
 
 void Canvas::frame(const Box& box, int line, Rgb colour) {
@@ -59,69 +93,88 @@ void Canvas::frame(const Box& box, int line, Rgb colour) {
   fill({box.right() - line, box.y, line, box.height}, colour);
 }
 
-void Canvas::polygon(const std::vector<Point>& corners, Rgb colour) {
-  std::vector<cv::Point> fixed;
-  for (const Point& corner : corners) fixed.push_back(fixed_point(corner));
-  cv::fillConvexPoly(pixels_->bgr, fixed, scalar(colour), cv::LINE_AA, kShift);
+void Canvas::polygon(const std::vector<Point>& corners, Rgb colour, double opacity) {
+  polygon(corners, colour, opacity, whole());
+}
+
+void Canvas::polygon(const std::vector<Point>& corners, Rgb colour, double opacity, const Box& clip) {
+  draw([seen = clipped_polygon(corners, clip), paint = Paint{colour, opacity}](Surface& to) {
+    if (!seen.empty()) to.polygon(seen, paint);
+  });
 }
 
 void Canvas::disc(Point centre, double radius, Rgb colour) {
-  cv::circle(pixels_->bgr, fixed_point(centre), int(std::lround(radius * (1 << kShift))), scalar(colour), cv::FILLED,
-             cv::LINE_AA, kShift);
+  draw([=](Surface& to) { to.disc(centre, radius, colour); });
 }
 
-void Canvas::picture(const Box& box, const uint8_t* rgb) {
-  for (int y = box.y; y < box.bottom(); ++y)
-    for (int x = box.x; x < box.right(); ++x, rgb += 3) pixels_->bgr.at<cv::Vec3b>(y, x) = {rgb[2], rgb[1], rgb[0]};
+void Canvas::line(const std::vector<Point>& points, double width, Rgb colour, const Dash& dash) {
+  line(points, width, colour, dash, whole());
 }
 
-void Canvas::blend(int x, int y, uint8_t coverage, Rgb colour) {
-  if (coverage == 0) return;
-  if (x < 0 || y < 0 || x >= width() || y >= height()) {
-    ++clipped_;
-    return;
-  }
-  cv::Vec3b& pixel = pixels_->bgr.at<cv::Vec3b>(y, x);
-  const uint8_t to[3] = {colour.b, colour.g, colour.r};
-  for (int i = 0; i < 3; ++i) pixel[i] = uint8_t((pixel[i] * (255 - coverage) + to[i] * coverage + 127) / 255);
+void Canvas::line(const std::vector<Point>& points, double width, Rgb colour, const Dash& dash, const Box& clip) {
+  std::vector<LinePart> parts = visible_parts(points, width, dash, clip);
+  if (parts.empty()) return;
+  const bool is_dot = points.size() == 1;
+  if (is_dot) parts[0].points.push_back(parts[0].points[0]);
+  draw([=](Surface& to) { to.line(parts, is_dot ? 2 * width : width, colour, clip); });
 }
 
-void Canvas::paint(const Mask& mask, Rgb colour, double opacity) {
-  const Box& box = mask.box;
-  for (int y = std::max(0, box.y); y < std::min(height(), box.bottom()); ++y)
-    for (int x = std::max(0, box.x); x < std::min(width(), box.right()); ++x) {
-      const uint8_t coverage = mask.coverage[size_t(y - box.y) * box.width + (x - box.x)];
-      blend(x, y, uint8_t(std::lround(coverage * opacity)), colour);
-    }
+void Canvas::picture(const Box& box, std::vector<uint8_t> rgb) {
+  draw([box, rgb = std::move(rgb)](Surface& to) { to.picture(box, rgb); });
 }
 
 void Canvas::text(int x, int y, const std::string& text, int size, Rgb colour, Across across, Upright upright) {
-  const TextMask& mask = font_.mask(text, size);
-  const int left = across == Across::kLeft ? x : across == Across::kCentre ? x - mask.width / 2 : x - mask.width;
-  const int digit = font_.digit_height(size);
-  const int baseline = upright == Upright::kBaseline ? y
-                       : upright == Upright::kMiddle ? y + (digit + 1) / 2
-                                                     : y + digit;
-  const uint8_t* coverage = mask.coverage.data();
-  for (int row = -mask.ascent; row < mask.descent; ++row)
-    for (int column = 0; column < mask.width; ++column) blend(left + column, baseline + row, *coverage++, colour);
+  const double digit = size * font_.shape("0").top;
+  const double baseline = upright == Upright::kBaseline ? y : upright == Upright::kMiddle ? y + digit / 2 : y + digit;
+  write(text, {double(x), std::round(baseline)}, size, colour, false, across);
 }
 
 void Canvas::text_up(int x, int y, const std::string& text, int size, Rgb colour, Across along) {
-  const TextMask& mask = font_.mask(text, size);
-  const int start = along == Across::kLeft ? y : along == Across::kCentre ? y + mask.width / 2 : y + mask.width;
-  const int baseline = x + (font_.digit_height(size) + 1) / 2;
-  const uint8_t* coverage = mask.coverage.data();
-  for (int row = -mask.ascent; row < mask.descent; ++row)
-    for (int column = 0; column < mask.width; ++column) blend(baseline + row, start - 1 - column, *coverage++, colour);
+  write(text, {std::round(x + size * font_.shape("0").top / 2), double(y)}, size, colour, true, along);
 }
 
-std::string Canvas::png() const {
-  std::vector<uint8_t> bytes;
-  // Both parameters are given so that a build's defaults cannot change the bytes.
-  cv::imencode(".png", pixels_->bgr, bytes,
-               {cv::IMWRITE_PNG_COMPRESSION, 6, cv::IMWRITE_PNG_STRATEGY, cv::IMWRITE_PNG_STRATEGY_DEFAULT});
-  return {bytes.begin(), bytes.end()};
+// The point is where ink begins, has its middle or ends, on the baseline.
+void Canvas::write(const std::string& text, Point point, int size, Rgb colour, bool upwards, Across across) {
+  const std::string valid = valid_text(text);
+  const TextShape& shape = font_.shape(valid);
+  if (shape.glyphs.empty()) return;
+  const double left = size * shape.left, right = size * shape.right;
+  const double before = across == Across::kLeft ? left : across == Across::kCentre ? (left + right) / 2 : right;
+  const Point pen = upwards ? Point{point.x, point.y + before} : Point{point.x - before, point.y};
+  const auto anchor = across == Across::kLeft     ? TextRun::Anchor::kStart
+                      : across == Across::kCentre ? TextRun::Anchor::kMiddle
+                                                  : TextRun::Anchor::kEnd;
+  // The ink, and of it what can be seen.
+  const double top = size * shape.top, bottom = size * shape.bottom;
+  const double x0 = upwards ? pen.x - top : pen.x + left, x1 = upwards ? pen.x - bottom : pen.x + right;
+  const double y0 = upwards ? pen.y - right : pen.y - top, y1 = upwards ? pen.y - left : pen.y - bottom;
+  clipped_ += area_of(x1 - x0, y1 - y0) - area_of(std::min(x1, double(width_)) - std::max(x0, 0.0),
+                                                  std::min(y1, double(height_)) - std::max(y0, 0.0));
+  draw([run = TextRun{valid, pen, size, colour, upwards, anchor}, &font = font_](Surface& to) { to.text(run, font); });
+}
+
+const Raster& Canvas::raster() const {
+  if (!raster_) raster_ = std::make_unique<Raster>(width_, height_);
+  for (; rastered_ < shapes_.size(); ++rastered_) shapes_[rastered_](*raster_);
+  return *raster_;
+}
+
+Rgb Canvas::at(int x, int y) const { return raster().at(x, y); }
+
+std::string Canvas::png() const { return raster().png(scale_); }
+
+std::string Canvas::pdf() const {
+  std::string bytes;
+  PdfPage page(bytes, width_, height_, scale_);
+  for (const auto& shape : shapes_) shape(page);
+  page.finish();
+  return bytes;
+}
+
+std::string Canvas::svg() const {
+  SvgSurface surface(width_, height_, scale_, font_);
+  for (const auto& shape : shapes_) shape(surface);
+  return surface.svg();
 }
 
 }  // namespace synpo

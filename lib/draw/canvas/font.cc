@@ -1,11 +1,14 @@
 #include "draw/canvas/font.h"
 
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include <hb-ft.h>
+#include <hb.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <opencv2/core.hpp>
-#include <opencv2/freetype.hpp>
-#include <opencv2/imgproc.hpp>
 #include <system_error>
 
 #include "base/error.h"
@@ -43,50 +46,91 @@ std::vector<size_t> character_starts(const std::string& text) {
 }  // namespace
 
 struct Font::Face {
-  cv::Ptr<cv::freetype::FreeType2> freetype;
+  ~Face() {
+    if (font) hb_font_destroy(font);
+    if (face) FT_Done_Face(face);
+    if (library) FT_Done_FreeType(library);
+  }
+  FT_Library library = nullptr;
+  FT_Face face = nullptr;
+  hb_font_t* font = nullptr;
+  double em = 1;
 };
 
-Font::Font(const std::string& path) : face_(std::make_unique<Face>()) {
+Font::Font(const std::string& path) : face_(std::make_shared<Face>()) {
   const std::string file = font_path(path);
   try {
-    Input probe(file);  // its message is better than OpenCV's
+    Input probe(file);  // its message is better than FreeType's
   } catch (const Error& error) {
     fail(error.code(), "cannot read the font: ", error.what());
   }
-  try {
-    face_->freetype = cv::freetype::createFreeType2();
-    face_->freetype->loadFontData(file, 0);
-  } catch (const cv::Exception&) {
+  // What has no outlines cannot be scaled.
+  if (FT_Init_FreeType(&face_->library) || FT_New_Face(face_->library, file.c_str(), 0, &face_->face) ||
+      !FT_IS_SCALABLE(face_->face))
     fail(Exit::kData, "cannot read the font ", quoted(file), ": no format that FreeType knows");
-  }
+  face_->em = face_->face->units_per_EM;
+  hb_face_t* const shapes = hb_ft_face_create_referenced(face_->face);
+  face_->font = hb_font_create(shapes);
+  hb_face_destroy(shapes);
 }
 
 Font::~Font() = default;
 
-const TextMask& Font::mask(const std::string& text, int size) const {
-  const auto [entry, fresh] = masks_.try_emplace({text, size});
-  TextMask& mask = entry->second;
-  if (!fresh || text.empty()) return mask;
-  int baseline = 0;
-  const cv::Size box = face_->freetype->getTextSize(text, size, -1, &baseline);
-  // Accents and overhangs may leave the box that is measured.
-  const int margin = size + 2, origin = 2 * size;
-  cv::Mat ink(3 * size + 2, box.width + 2 * margin, CV_8UC3, cv::Scalar::all(0));
-  face_->freetype->putText(ink, text, cv::Point(margin, origin), size, cv::Scalar::all(255), -1, cv::LINE_AA, true);
-  std::vector<cv::Point> inked;
-  cv::Mat grey;
-  cv::extractChannel(ink, grey, 0);
-  cv::findNonZero(grey, inked);
-  if (inked.empty()) return mask;
-  const cv::Rect bounds = cv::boundingRect(inked);
-  const int top = std::min(bounds.y, origin - 1), bottom = std::max(bounds.y + bounds.height, origin);
-  mask.width = bounds.width;
-  mask.ascent = origin - top;
-  mask.descent = bottom - origin;
-  for (int y = top; y < bottom; ++y)
-    mask.coverage.insert(mask.coverage.end(), grey.ptr(y) + bounds.x, grey.ptr(y) + bounds.x + bounds.width);
-  return mask;
+// It keeps all that FreeType has of the font.
+std::shared_ptr<FT_FaceRec_> Font::face() const { return {face_, face_->face}; }
+
+std::string Font::family() const {
+  const char* const name = face_->face->family_name;
+  return name ? name : "sans-serif";
 }
+
+const TextShape& Font::shape(const std::string& text) const {
+  const auto [entry, fresh] = shapes_.try_emplace(text);
+  TextShape& shape = entry->second;
+  if (!fresh || text.empty()) return shape;
+  hb_buffer_t* const buffer = hb_buffer_create();
+  hb_buffer_add_utf8(buffer, text.data(), int(text.size()), 0, int(text.size()));
+  hb_buffer_set_language(buffer, hb_language_from_string("en", -1));  // not that of the user's locale
+  hb_buffer_guess_segment_properties(buffer);
+  shape.leftwards = HB_DIRECTION_IS_BACKWARD(hb_buffer_get_direction(buffer));
+  hb_shape(face_->font, buffer, nullptr, 0);
+  unsigned count = 0;
+  const hb_glyph_info_t* const infos = hb_buffer_get_glyph_infos(buffer, &count);
+  const hb_glyph_position_t* const positions = hb_buffer_get_glyph_positions(buffer, &count);
+  double x = 0, y = 0;
+  bool inked = false;
+  for (unsigned i = 0; i < count; ++i) {
+    const double left = (x + positions[i].x_offset) / face_->em, up = (y + positions[i].y_offset) / face_->em;
+    shape.glyphs.push_back({infos[i].codepoint, left, up, infos[i].cluster});
+    hb_glyph_extents_t ink;
+    if (hb_font_get_glyph_extents(face_->font, infos[i].codepoint, &ink) && ink.width != 0 && ink.height != 0) {
+      const double from = left + ink.x_bearing / face_->em, top = up + ink.y_bearing / face_->em;
+      const double to = from + ink.width / face_->em, bottom = top + ink.height / face_->em;
+      shape.left = inked ? std::min(shape.left, from) : from;
+      shape.right = inked ? std::max(shape.right, to) : to;
+      shape.top = inked ? std::max(shape.top, top) : top;
+      shape.bottom = inked ? std::min(shape.bottom, bottom) : bottom;
+      inked = true;
+    }
+    x += positions[i].x_advance;
+    y += positions[i].y_advance;
+  }
+  shape.advance = x / face_->em;
+  hb_buffer_destroy(buffer);
+  const std::vector<size_t> starts = character_starts(text);
+  for (const TextShape::Glyph& glyph : shape.glyphs)
+    if (glyph.index == 0)
+      missing_.insert(
+          text.substr(glyph.begin, *std::upper_bound(starts.begin(), starts.end(), glyph.begin) - glyph.begin));
+  return shape;
+}
+
+int Font::width(const std::string& text, int size) const {
+  const TextShape& inked = shape(text);
+  return int(std::ceil(size * (inked.right - inked.left) - 1e-6));
+}
+
+int Font::digit_height(int size) const { return int(std::lround(size * shape("0").top)); }
 
 std::string Font::fitted(const std::string& text, int size, int width) const {
   const std::vector<size_t> starts = character_starts(text);

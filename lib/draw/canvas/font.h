@@ -3,18 +3,27 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "base/error.h"
 
+struct FT_FaceRec_;
+
 namespace synpo {
 
-// A line of text as coverage, 0 to 255, cropped to its ink across and measured from the baseline up and down.
-struct TextMask {
-  int width = 0, ascent = 0, descent = 0;  // ascent + descent rows
-  std::vector<uint8_t> coverage;           // [ascent + descent, width]
+// Where a line of text has its glyphs and its ink, in heights of the em square; y upwards, from where the pen begins.
+struct TextShape {
+  struct Glyph {
+    uint32_t index;  // in the font
+    double x, y;     // of its origin
+    uint32_t begin;  // the byte of the text where its cluster begins
+  };
+  std::vector<Glyph> glyphs;                        // from left to right
+  bool leftwards = false;                           // the text is read from right to left
+  double advance = 0;                               // to where the pen ends
+  double left = 0, right = 0, top = 0, bottom = 0;  // of the ink; all 0 where there is none
 };
 
 constexpr Cause kNoFont{"no font is installed"};
@@ -28,20 +37,29 @@ class Font {
   Font(const Font&) = delete;
   Font& operator=(const Font&) = delete;
 
-  // `size` is the height of the em square in pixels. The mask lives as long as the font.
-  const TextMask& mask(const std::string& text, int size) const;
-  int width(const std::string& text, int size) const { return mask(text, size).width; }
+  // It lives as long as the font.
+  const TextShape& shape(const std::string& text) const;
+  // Of the ink, in pixels. `size` is the height of the em square in pixels.
+  int width(const std::string& text, int size) const;
   // Height of a digit: what to centre on in a cell.
-  int digit_height(int size) const { return mask("0", size).ascent; }
+  int digit_height(int size) const;
   // `text`, or its beginning and end with an ellipsis between them, so that it is at most `width` pixels wide.
   std::string fitted(const std::string& text, int size, int width) const;
   // `text` broken at line ends, and at blanks into lines of at most `width` pixels; a longer word is fitted.
   std::vector<std::string> wrapped(const std::string& text, int size, int width) const;
 
+  // Of the font: "DejaVu Sans".
+  std::string family() const;
+  // The characters of all texts so far that the font has no glyphs for, each once.
+  const std::set<std::string>& missing() const { return missing_; }
+  // FreeType's, for what draws with it.
+  std::shared_ptr<FT_FaceRec_> face() const;
+
  private:
   struct Face;
-  std::unique_ptr<Face> face_;
-  mutable std::map<std::pair<std::string, int>, TextMask> masks_;
+  std::shared_ptr<Face> face_;
+  mutable std::map<std::string, TextShape> shapes_;
+  mutable std::set<std::string> missing_;
 };
 
 }  // namespace synpo

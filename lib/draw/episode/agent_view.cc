@@ -40,7 +40,7 @@ Canvas draw_agent_view(const WorldFace& face, const Film& film, const ViewStyle&
   const int headings_y = margin + title.height() + (caption.empty() ? 0 : px(2)), panels_y = headings_y + heading;
   const int beneath_y = panels_y + side + px(14);
   const int key_y = style.history ? beneath_y + row.height() + px(14) : beneath_y + (has_input ? heading : 0);
-  Canvas canvas(inside + 2 * margin, key_y + std::max(key.height(), input) + margin, font);
+  Canvas canvas(inside + 2 * margin, key_y + std::max(key.height(), input) + margin, font, style.scale);
 
   title.draw(canvas, margin, margin);
   const int seen_x = margin + before_seen;

@@ -77,7 +77,8 @@ Canvas draw_episode(const WorldFace& face, const Film& film, const EpisodeStyle&
   const int key_x = beside ? margin + plan.wide + bar + between : margin,
             key_y = beside ? plan_y : plan_y + high + px(12);
   const int panel_bottom = std::max(plan_y + high, key_y + key.height()), strip_y = panel_bottom + px(14);
-  Canvas canvas(inside + 2 * margin, (strip.height() > 0 ? strip_y + strip.height() : panel_bottom) + margin, font);
+  Canvas canvas(inside + 2 * margin, (strip.height() > 0 ? strip_y + strip.height() : panel_bottom) + margin, font,
+                style.scale);
   heading.draw(canvas, margin, margin);
   draw_way(canvas, face, {margin, plan_y, plan.cell, size.columns}, film, film.steps(), Shown::kWhole);
   if (has_plan) draw_time_bar(canvas, margin + plan.wide, plan_y, high, film.steps(), time_marks(face, film), px);
@@ -96,7 +97,7 @@ Canvas draw_episode_frame(const WorldFace& face, const Film& film, int moment, c
   const int side = std::max(square_side(kFrameSidePt, face.seen_unit(), px), plan.high),
             width = plan.wide + between + side;
   const auto even = [](int n) { return n + n % 2; };
-  Canvas canvas(even(2 * margin + width), even(panels_y + side + margin), font);
+  Canvas canvas(even(2 * margin + width), even(panels_y + side + margin), font, style.scale);
   canvas.text(margin, margin, font.fitted(style.title.empty() ? face.name(film.pair) : style.title, title, width),
               title, kInk);
   const std::string words =

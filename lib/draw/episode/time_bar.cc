@@ -33,8 +33,7 @@ void draw_time_bar(Canvas& canvas, int x, int y, int height, int steps, const st
                    const Pixels& px) {
   const Box bar = {x + px(kGapPt), y + px(16), px(kBarPt), height - px(22)};
   const int text = px(kTextPt), sign = px(kSignPt);
-  for (int line = 0; line < bar.height; ++line)
-    canvas.fill({bar.x, bar.y + line, bar.width, 1}, time_colour(double(line) / std::max(1, bar.height - 1)));
+  canvas.shades(bar, time_colour);
   const auto row = [&](double step) {
     return bar.y + int(std::lround(bar.height * (step - 1) / std::max(1, steps - 1)));
   };

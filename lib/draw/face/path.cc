@@ -9,7 +9,6 @@
 
 #include "base/error.h"
 #include "draw/canvas/font.h"
-#include "draw/canvas/stroke.h"
 #include "draw/colour.h"
 #include "draw/paper.h"
 
@@ -40,13 +39,7 @@ std::vector<Move> moves_of(const PlanGrid& place, const std::vector<int>& cells)
   return moves;
 }
 
-void draw_piece(Canvas& canvas, Point a, Point b, double width, Rgb colour) {
-  const int reach = int(std::ceil(width)) + 1;
-  const int left = int(std::floor(std::min(a.x, b.x))) - reach, top = int(std::floor(std::min(a.y, b.y))) - reach;
-  const Box around = {left, top, int(std::ceil(std::max(a.x, b.x))) + reach - left,
-                      int(std::ceil(std::max(a.y, b.y))) + reach - top};
-  canvas.paint(stroke_mask({a, b}, width, {}, around), colour);
-}
+void draw_piece(Canvas& canvas, Point a, Point b, double width, Rgb colour) { canvas.line({a, b}, width, colour); }
 
 // Size of the numbers in the cells; 0 where they could not be read.
 int count_size(int cell) { return cell / 3 < 8 ? 0 : cell / 3; }

@@ -71,7 +71,7 @@ Canvas WorldFace::draw_plans(const std::vector<int>& envs, const MapStyle& style
     names.push_back({{}, font.fitted(world().environments()[size_t(env)].name, px(9), inside)});
   const Heading heading(style.title, "", inside, style.scale, font);
   const Key key(names, inside, style.scale, font);
-  Canvas canvas(inside + 2 * margin, margin + heading.height() + key.height() + margin, font);
+  Canvas canvas(inside + 2 * margin, margin + heading.height() + key.height() + margin, font, style.scale);
   heading.draw(canvas, margin, margin);
   key.draw(canvas, margin, margin + heading.height());
   return canvas;
@@ -133,9 +133,10 @@ void WorldFace::draw_observation(Canvas& canvas, const Box& box, const Film& fil
   StateHistory history;
   history.push(film.states[size_t(moment)]);
   world().observe(film.pair.env, history, film.window, observation.data());
-  const PlanGrid place = {box.x, box.y, box.width / spec.side, spec.side};
+  std::vector<Rgb> colours;
   for (int at = 0; at < spec.side * spec.side; ++at)
-    canvas.fill(place.box(at), spec.palette[observation[size_t(at * kHistory + kHistory - 1)]]);
+    colours.push_back(spec.palette[observation[size_t(at * kHistory + kHistory - 1)]]);
+  canvas.squares(box.x, box.y, box.width / spec.side, spec.side, colours);
 }
 
 std::string WorldFace::seen_words(const Film&) const { return ""; }

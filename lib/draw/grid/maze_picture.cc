@@ -23,8 +23,10 @@ void draw_maze(Canvas& canvas, int x, int y, int cell, const Maze& maze) {
       canvas.fill({x + i * cell - line / 2, y, line, kGridSide * cell}, kPaperGrid);
       canvas.fill({x, y + i * cell - line / 2, kGridSide * cell, line}, kPaperGrid);
     }
+  std::vector<Box> walls;
   for (int at = 0; at < kGridCells; ++at)
-    if (maze.wall[at]) canvas.fill(maze_grid(x, y, cell).box(at), kPaperWall);
+    if (maze.wall[at]) walls.push_back(maze_grid(x, y, cell).box(at));
+  canvas.fill(walls, kPaperWall);
 }
 
 void draw_treasure(Canvas& canvas, const Box& box, int treasure) {
@@ -68,7 +70,7 @@ Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Fo
   const Heading heading(style.title, "", width - 2 * margin, style.scale, font);
   const int top = margin + heading.height();
 
-  Canvas canvas(width, top + rows * (side + below) + (rows - 1) * px(8) + margin - px(4), font);
+  Canvas canvas(width, top + rows * (side + below) + (rows - 1) * px(8) + margin - px(4), font, style.scale);
   heading.draw(canvas, margin, margin);
   for (int i = 0; i < count; ++i) {
     const int x = margin + i % columns * (side + between), y = top + i / columns * (side + below + px(8));

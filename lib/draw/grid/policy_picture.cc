@@ -145,7 +145,7 @@ Canvas draw_maze_policy(const Maze& maze, const Task& task, const std::vector<Po
   const Heading heading(style.title, style.caption, inside, style.scale, font);
   const Key key = make_key(stages, inside, style.scale, font);
   const int titles_y = margin + heading.height() + px(2), y = titles_y + title + px(6), key_y = y + side + px(12);
-  Canvas canvas(inside + 2 * margin, key_y + key.height() + margin, font);
+  Canvas canvas(inside + 2 * margin, key_y + key.height() + margin, font, style.scale);
   heading.draw(canvas, margin, margin);
   for (int i = 0; i < count; ++i) {
     const PlanGrid place = maze_grid(margin + i * (side + between), y, cell);

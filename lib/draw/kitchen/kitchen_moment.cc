@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "base/rgb.h"
@@ -20,58 +21,31 @@ constexpr double kSightOpacity = 0.3;
 constexpr double kHalfSight = std::numbers::pi / 6;
 constexpr double kObjectShare = 1.08;  // of a cell
 
-// How far the field of view reaches, in cells, by directions from its left edge to its right one.
-class Reach {
- public:
-  Reach(const Kitchen& kitchen, const KitchenPose& eye) {
-    const double ahead = eye.heading * std::numbers::pi / 180;
-    for (size_t i = 0; i < cells_.size(); ++i) {
-      const double angle = ahead - kHalfSight + 2 * kHalfSight * double(i) / double(cells_.size() - 1);
-      cells_[i] = along(kitchen, eye, std::sin(angle), -std::cos(angle));
-    }
+// How far a view along (x, y), of length 1, reaches, in cells.
+double reach(const Kitchen& kitchen, const KitchenPose& eye, double x, double y) {
+  constexpr double kPace = 0.02;
+  bool in_fridge = false;
+  for (double length = 0; length < kSightCells; length += kPace) {
+    const char c =
+        kitchen.at(int(std::floor(eye.row + 0.5 + length * y)), int(std::floor(eye.column + 0.5 + length * x)));
+    if (c == '#' || (in_fridge && c != 'F')) return length;
+    in_fridge = c == 'F';
   }
-  // `angle` from straight ahead, within the field of view.
-  double at(double angle) const {
-    const double share = (angle + kHalfSight) / (2 * kHalfSight);
-    return cells_[size_t(std::clamp(std::lround(share * double(cells_.size() - 1)), 0L, long(cells_.size()) - 1))];
-  }
-
- private:
-  static double along(const Kitchen& kitchen, const KitchenPose& eye, double x, double y) {
-    constexpr double kPace = 0.02;
-    bool in_fridge = false;
-    for (double length = 0; length < kSightCells; length += kPace) {
-      const char c =
-          kitchen.at(int(std::floor(eye.row + 0.5 + length * y)), int(std::floor(eye.column + 0.5 + length * x)));
-      if (c == '#' || (in_fridge && c != 'F')) return length;
-      in_fridge = c == 'F';
-    }
-    return kSightCells;
-  }
-  std::array<double, 361> cells_;
-};
+  return kSightCells;
+}
 
 }  // namespace
 
 void draw_sight(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, const KitchenPose& eye) {
-  constexpr int kFine = 3;  // samples a pixel, each way
-  const Reach reach(kitchen, eye);
+  constexpr int kRays = 360;
   const Point from = place.centre(plan_cell(kitchen, eye.row, eye.column));
-  const int side = 2 * (kSightCells * place.cell + 1);
-  Mask mask = {{int(from.x) - side / 2, int(from.y) - side / 2, side, side}, {}};
-  for (int y = 0; y < side; ++y)
-    for (int x = 0; x < side; ++x) {
-      int covered = 0;
-      for (int i = 0; i < kFine * kFine; ++i) {
-        const double dx = mask.box.x + x + (i % kFine + 0.5) / kFine - from.x,
-                     dy = mask.box.y + y + (i / kFine + 0.5) / kFine - from.y;
-        const double angle =
-            std::remainder(std::atan2(dx, -dy) - eye.heading * std::numbers::pi / 180, 2 * std::numbers::pi);
-        covered += std::fabs(angle) <= kHalfSight && std::hypot(dx, dy) <= reach.at(angle) * place.cell;
-      }
-      mask.coverage.push_back(uint8_t(255 * covered / (kFine * kFine)));
-    }
-  canvas.paint(mask, kSight, kSightOpacity);
+  std::vector<Point> corners = {from};
+  for (int i = 0; i <= kRays; ++i) {
+    const double angle = eye.heading * std::numbers::pi / 180 + kHalfSight * (2.0 * i / kRays - 1);
+    const double x = std::sin(angle), y = -std::cos(angle), length = reach(kitchen, eye, x, y) * place.cell;
+    corners.push_back({from.x + length * x, from.y + length * y});
+  }
+  canvas.polygon(corners, kSight, kSightOpacity);
 }
 
 void draw_sight_sign(Canvas& canvas, const Box& box) {
@@ -117,17 +91,15 @@ void draw_kitchen_seen(Canvas& canvas, const Box& box, const KitchenSolids& soli
                       size_t(channel)];
         rgb.push_back(uint8_t((sum + kFine * kFine / 2) / (kFine * kFine)));
       }
-  canvas.picture(box, rgb.data());
+  canvas.picture(box, std::move(rgb));
 }
 
 void draw_small_seen(Canvas& canvas, const Box& box, const KitchenSolids& solids, const KitchenFrame* frame) {
   std::array<uint8_t, kSmallView* kSmallView* 3> rgb = {};
   if (frame) render_small(solids, *frame, rgb.data());
-  const PlanGrid place = {box.x, box.y, box.width / kSmallView, kSmallView};
-  for (int at = 0; at < kSmallView * kSmallView; ++at) {
-    const uint8_t* pixel = rgb.data() + 3 * at;
-    canvas.fill(place.box(at), {pixel[0], pixel[1], pixel[2]});
-  }
+  std::vector<Rgb> colours;
+  for (size_t at = 0; at < rgb.size(); at += 3) colours.push_back({rgb[at], rgb[at + 1], rgb[at + 2]});
+  canvas.squares(box.x, box.y, box.width / kSmallView, kSmallView, colours);
 }
 
 }  // namespace synpo

@@ -10,7 +10,6 @@
 #include "base/error.h"
 #include "base/rgb.h"
 #include "draw/canvas/heading.h"
-#include "draw/canvas/stroke.h"
 #include "draw/colour.h"
 #include "draw/kitchen/kitchen_colours.h"
 #include "draw/paper.h"
@@ -53,7 +52,7 @@ struct Front {
 };
 
 void draw_stroke(Canvas& canvas, const std::vector<Point>& points, double width, Rgb colour) {
-  canvas.paint(stroke_mask(points, width, {}, {0, 0, canvas.width(), canvas.height()}), colour);
+  canvas.line(points, width, colour);
 }
 
 double door_thickness(double cell) { return std::max(2.0, cell * 0.2); }
@@ -162,10 +161,11 @@ Box receptacle_box(const PlanGrid& place, const Kitchen& kitchen, int receptacle
 
 void draw_kitchen(Canvas& canvas, const PlanGrid& place, const Kitchen& kitchen, int doors, Lettering lettering) {
   const std::array<Rgb, 2> tiles = paper_floor(kitchen.hash);
+  std::vector<Rgb> colours;
   for (int row = 0; row < kitchen.rows; ++row)
     for (int column = 0; column < kitchen.columns; ++column)
-      canvas.fill(place.box(plan_cell(kitchen, row, column)),
-                  kitchen_cell_colour(kitchen.at(row, column), tiles[size_t(row + column) % 2]));
+      colours.push_back(kitchen_cell_colour(kitchen.at(row, column), tiles[size_t(row + column) % 2]));
+  canvas.squares(place.x, place.y, place.cell, kitchen.columns, colours);
   draw_edges(canvas, place, kitchen);
   for (int i = 0; i < kKitchenReceptacles; ++i) {
     const Box box = receptacle_box(place, kitchen, i);
@@ -259,7 +259,7 @@ Canvas draw_kitchens(const std::vector<Kitchen>& kitchens, const MapStyle& style
   const Heading heading(style.title, "", inside, style.scale, font);
   const Key key(key_entries(kitchens), inside - metre, style.scale, font);
   const int top = margin + heading.height(), key_y = top + high + px(4);
-  Canvas canvas(inside + 2 * margin, key_y + key.height() + margin, font);
+  Canvas canvas(inside + 2 * margin, key_y + key.height() + margin, font, style.scale);
   heading.draw(canvas, margin, margin);
   int y = top;
   for (int row = 0; row < rows; ++row) {

@@ -7,7 +7,7 @@
 #include "base/rgb.h"
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/key.h"
-#include "draw/canvas/stroke.h"
+#include "draw/canvas/shapes.h"
 #include "draw/colour.h"
 #include "draw/face/film.h"
 #include "draw/face/path.h"
@@ -33,7 +33,7 @@ void draw_turn_sign(Canvas& canvas, const Box& box) {
 }
 
 void draw_line(Canvas& canvas, Point from, Point to, double width, const Dash& dash, Rgb colour) {
-  canvas.paint(stroke_mask({from, to}, width, dash, {0, 0, canvas.width(), canvas.height()}), colour);
+  canvas.line({from, to}, width, colour, dash);
 }
 
 // From where the agent stood to what it opened, took or filled.

@@ -48,15 +48,20 @@ void draw_marks(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
   for (size_t i = 0; i < marks.size(); ++i) {
     const double y = marks[i].first, right = plot.right();
     const Dash dots = {1.2 * style.scale, 2.6 * style.scale};
-    canvas.paint(stroke_mask({{double(plot.x), y}, {right, y}}, kMarkLinePt * style.scale, dots, plot), kSoftInk);
+    canvas.line({{double(plot.x), y}, {right, y}}, kMarkLinePt * style.scale, kSoftInk, dots, plot);
     if (marks[i].second->label.empty()) continue;
     const Box beside = {plot.right(), 0, space, canvas.height()};
-    canvas.paint(stroke_mask({{right, y}, {right + space * 2 / 3, text[i]}}, 0.5 * style.scale, {}, beside), kSoftInk);
+    canvas.line({{right, y}, {right + space * 2 / 3, text[i]}}, 0.5 * style.scale, kSoftInk, {}, beside);
     const std::string label =
         canvas.font().fitted(marks[i].second->label, size, panel.area.right() - plot.right() - space);
     canvas.text(plot.right() + space, int(std::lround(text[i])), label, size, kSoftInk, Across::kLeft,
                 Upright::kMiddle);
   }
+}
+
+void draw_band(Canvas& canvas, std::vector<Point> high, const std::vector<Point>& low, Rgb colour, const Box& plot) {
+  high.insert(high.end(), low.rbegin(), low.rend());
+  canvas.polygon(high, colour, kBandOpacity, plot);
 }
 
 // The first method is drawn last, on top.
@@ -72,13 +77,11 @@ void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
       if (!curve) continue;
       const CurveLook look = curve_look(set, layout.one_panel, method, part);
       if (!bands)
-        canvas.paint(stroke_mask(places(layout.axes, plot, curve->x, curve->mean), kCurvePt * scale,
-                                 curve_dash(look, scale), clip),
-                     look.colour);
+        canvas.line(places(layout.axes, plot, curve->x, curve->mean), kCurvePt * scale, look.colour,
+                    curve_dash(look, scale), clip);
       else if (!curve->low.empty())
-        canvas.paint(band_mask(places(layout.axes, plot, curve->x, curve->high),
-                               places(layout.axes, plot, curve->x, curve->low), plot),
-                     look.colour, kBandOpacity);
+        draw_band(canvas, places(layout.axes, plot, curve->x, curve->high),
+                  places(layout.axes, plot, curve->x, curve->low), look.colour, plot);
     }
 }
 
@@ -119,7 +122,7 @@ Dash curve_dash(const CurveLook& look, double scale) { return look.dashed ? Dash
 
 Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font) {
   const CurvesLayout layout = lay_out_curves(set, style, font);
-  Canvas canvas(layout.width, layout.height, font);
+  Canvas canvas(layout.width, layout.height, font, style.scale);
   layout.heading.draw(canvas, layout.margin, layout.margin);
   const CurvesLegend legend =
       lay_out_curves_legend(set, layout.one_panel, style.scale, layout.width - 2 * layout.margin, font);

@@ -13,7 +13,7 @@
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/font.h"
 #include "draw/canvas/heading.h"
-#include "draw/canvas/stroke.h"
+#include "draw/canvas/shapes.h"
 #include "draw/plot/axes.h"
 #include "stats/curve.h"
 

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 
-#include "draw/canvas/stroke.h"
 #include "draw/colour.h"
 
 namespace synpo {
@@ -60,10 +58,11 @@ void draw_curves_legend(Canvas& canvas, const CurvesLegend& legend, int x, int y
   for (const CurvesLegend::Entry& entry : legend.entries) {
     const Box sample = {x + entry.x, y + entry.y, px(kSamplePt), px(kTextPt)};
     const double middle = sample.y + sample.height / 2.0;
-    const Mask whole = {sample, std::vector<uint8_t>(size_t(sample.width) * sample.height, 255)};
-    if (entry.band) canvas.paint(whole, entry.look.colour, kBandOpacity);
+    const double left = sample.x, right = sample.right(), top = sample.y, bottom = sample.bottom();
+    if (entry.band)
+      canvas.polygon({{left, top}, {right, top}, {right, bottom}, {left, bottom}}, entry.look.colour, kBandOpacity);
     const std::vector<Point> line = {{sample.x + scale, middle}, {sample.right() - scale, middle}};
-    canvas.paint(stroke_mask(line, kCurvePt * scale, curve_dash(entry.look, scale), sample), entry.look.colour);
+    canvas.line(line, kCurvePt * scale, entry.look.colour, curve_dash(entry.look, scale), sample);
     canvas.text(sample.right() + px(kSpacePt), sample.y + sample.height / 2, entry.name, px(kTextPt), kInk,
                 Across::kLeft, Upright::kMiddle);
   }

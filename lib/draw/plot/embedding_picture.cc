@@ -127,6 +127,13 @@ void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const
     panel.marks[i](canvas, {x + plan.names - px(1), y + middle - marker / 2, marker, marker});
     panel.marks[i](canvas, {left + middle - marker / 2, below - px(1), marker, marker});
   }
+  // Beneath cells without a gap, lest seams between them show.
+  if (gap == 0) {
+    std::vector<Rgb> colours;
+    for (int i = 0; i < count * count; ++i)
+      colours.push_back(i / count == i % count ? kPaper : distance_colour(plan.bar.place(plan.values[size_t(i)])));
+    canvas.squares(left, y, cell, count, colours);
+  }
   for (int row = 0; row < count; ++row)
     for (int column = 0; column < count; ++column) {
       if (row == column) continue;
@@ -139,8 +146,7 @@ void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const
                     plan.value_size, ink_on(ground), Across::kCentre, Upright::kMiddle);
     }
   const Box bar = {left + side + px(10), y, px(kBarPt), side};
-  for (int row = 0; row < bar.height; ++row)
-    canvas.fill({bar.x, bar.y + row, bar.width, 1}, distance_colour(1 - double(row) / std::max(1, bar.height - 1)));
+  canvas.shades(bar, [](double share) { return distance_colour(1 - share); });
   const Ticks ticks = plan.bar.ticks(kMostTicks);
   for (const double at : ticks.at) {
     const int tick = bar.bottom() - int(std::lround(plan.bar.place(at) * bar.height));
@@ -168,7 +174,7 @@ Canvas draw_embedding_map(const std::vector<Embeddings>& panels, const Embedding
   }
   const Heading heading(style.title, style.caption, inside, style.scale, font);
   const int titles_y = margin + heading.height() + px(2), plot_y = titles_y + title + px(7);
-  Canvas canvas(inside + 2 * margin, plot_y + side + below + margin, font);
+  Canvas canvas(inside + 2 * margin, plot_y + side + below + margin, font, style.scale);
   heading.draw(canvas, margin, margin);
   int x = margin;
   for (size_t i = 0; i < panels.size(); ++i) {
@@ -198,7 +204,7 @@ Canvas draw_embedding_distances(const std::vector<Embeddings>& panels, Distance 
   }
   const Heading heading(style.title, style.caption, inside, style.scale, font);
   const int titles_y = margin + heading.height() + px(2), y = titles_y + title + px(7);
-  Canvas canvas(inside + 2 * margin, y + height + margin, font);
+  Canvas canvas(inside + 2 * margin, y + height + margin, font, style.scale);
   heading.draw(canvas, margin, margin);
   int x = margin;
   for (size_t i = 0; i < panels.size(); ++i) {

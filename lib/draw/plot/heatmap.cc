@@ -76,6 +76,13 @@ void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const
   const int envs = int(table.envs.size()), side = layout.cell - layout.gap;
   std::vector<bool> named(table.cells.size());
   if (!table.parts.empty() && layout.cell >= 3 * layout.pixels(kPartNamePt)) named = cells_that_name_parts(table);
+  // Beneath cells without a gap, lest seams between them show.
+  if (layout.gap == 0) {
+    std::vector<Rgb> colours;
+    for (const HeatCell& cell : table.cells)
+      colours.push_back(cell.evaluated() ? ramp_colour(group_ramp(table, cell.group, scheme), cell.rate()) : kPaper);
+    canvas.squares(matrix.x, matrix.y, layout.cell, envs, colours);
+  }
   for (int i = 0; i < int(table.cells.size()); ++i) {
     const HeatCell& cell = table.cells[i];
     const Box box = {matrix.x + i % envs * layout.cell, matrix.y + i / envs * layout.cell, side, side};
@@ -154,7 +161,7 @@ void draw_trees(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& l
 Canvas draw_heatmap(const HeatFigure& figure, const HeatmapStyle& style, const Font& font) {
   const Scheme& scheme = find_scheme(style.scheme);
   const HeatmapLayout layout = lay_out_heatmap(figure, style, font);
-  Canvas canvas(layout.width, layout.height, font);
+  Canvas canvas(layout.width, layout.height, font, style.scale);
   layout.heading.draw(canvas, layout.margin, layout.margin);
   draw_task_labels(canvas, layout);
   for (size_t i = 0; i < layout.panels.size(); ++i) {

@@ -73,9 +73,8 @@ void draw_legend(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& 
 
   const int groups = int(table.groups.size());
   for (int group = 0; group < groups; ++group)
-    for (int row = 0; row < layout.bar_height; ++row)
-      canvas.fill({x + group * px(kBarPt + 2), y + row, px(kBarPt), 1},
-                  ramp_colour(group_ramp(table, group, scheme), 1 - double(row) / std::max(1, layout.bar_height - 1)));
+    canvas.shades({x + group * px(kBarPt + 2), y, px(kBarPt), layout.bar_height},
+                  [&](double share) { return ramp_colour(group_ramp(table, group, scheme), 1 - share); });
   const int ticks_x = x + groups * px(kBarPt + 2);
   for (int quarter = 0; quarter <= 4; ++quarter) {
     const int at = y + (layout.bar_height - 1) * (4 - quarter) / 4;

@@ -106,7 +106,7 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
     synpo-render heatmap --ansi -o out m.tsv
     cmp true out
     fails 64 synpo-render heatmap --ansi --margins m.tsv
-    says "--margins is for a PNG, not for --ansi"
+    says "--margins is for a picture, not for --ansi"
     fails 64 synpo-render map --ansi --scale 1
 }
 

@@ -1,16 +1,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error.h"
 #include "draw/canvas/canvas.h"
-#include "draw/canvas/stroke.h"
+#include "draw/canvas/shapes.h"
 #include "draw/canvas/ticks.h"
-#include "draw/video/video.h"
 #include "draw/colour.h"
+#include "draw/video/video.h"
 #include "helpers/font.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
@@ -62,37 +64,78 @@ TEST(Font, MissingFontNamesThePackage) {
   unsetenv("SYNPO_FONT");
 }
 
-int ink(const Mask& mask, int x, int y) {
-  return mask.coverage[size_t(y - mask.box.y) * mask.box.width + (x - mask.box.x)];
-}
+// How much of a pixel what is drawn in black covers, 0 to 255.
+int ink(const Canvas& canvas, int x, int y) { return 255 - canvas.at(x, y).r; }
 
-TEST(Stroke, CoversItsWidthAndStaysInItsBox) {
+constexpr Rgb kBlack = {0, 0, 0};
+
+TEST(Line, CoversItsWidthAndStaysInItsBox) {
   const Box box = {10, 10, 40, 20};
-  const Mask mask = stroke_mask({{-1e300, 20}, {1e300, 20}}, 4, {}, box);
-  ASSERT_EQ(mask.coverage.size(), 800u);
+  Canvas canvas(60, 40, font());
+  canvas.line({{-1e300, 20}, {1e300, 20}}, 4, kBlack, {}, box);
   for (int x = 10; x < 50; ++x) {
-    EXPECT_EQ(ink(mask, x, 16), 0);
-    EXPECT_EQ(ink(mask, x, 18), 255);
-    EXPECT_EQ(ink(mask, x, 21), 255);
-    EXPECT_EQ(ink(mask, x, 23), 0);
+    EXPECT_EQ(ink(canvas, x, 16), 0);
+    EXPECT_EQ(ink(canvas, x, 18), 255);
+    EXPECT_EQ(ink(canvas, x, 21), 255);
+    EXPECT_EQ(ink(canvas, x, 23), 0);
   }
-  const Mask dashed = stroke_mask({{10, 20}, {50, 20}}, 2, {6, 8}, box);
+  for (int y = 0; y < 40; ++y)
+    for (const int x : {9, 50}) EXPECT_EQ(ink(canvas, x, y), 0);
+  Canvas dashed(60, 40, font());
+  dashed.line({{10, 20}, {50, 20}}, 2, kBlack, {6, 8}, box);
   EXPECT_EQ(ink(dashed, 13, 20), 255);
   EXPECT_EQ(ink(dashed, 20, 20), 0);
   EXPECT_EQ(ink(dashed, 26, 20), 255);
-  EXPECT_EQ(ink(stroke_mask({{30, 20}}, 4, {}, box), 30, 20), 255);
+  Canvas dot(60, 40, font());
+  dot.line({{30, 20}}, 4, kBlack, {}, box);
+  EXPECT_EQ(ink(dot, 30, 20), 255);
+  EXPECT_EQ(ink(dot, 27, 20), 255) << "twice as wide as the line";
+  EXPECT_EQ(ink(dot, 25, 20), 0);
 }
 
-TEST(Stroke, BandsLieBetweenTheirLines) {
-  const Mask mask = band_mask({{12, 15}, {22, 15}, {40, 12}}, {{12, 18.5}, {22, 18.5}, {40, 25}}, {10, 10, 40, 20});
-  EXPECT_EQ(ink(mask, 11, 16), 0);
-  EXPECT_EQ(ink(mask, 14, 14), 0);
-  EXPECT_EQ(ink(mask, 14, 15), 255);
-  EXPECT_EQ(ink(mask, 14, 17), 255);
-  EXPECT_NEAR(ink(mask, 14, 18), 128, 1);
-  EXPECT_EQ(ink(mask, 14, 19), 0);
-  EXPECT_EQ(ink(mask, 39, 20), 255);
-  EXPECT_EQ(ink(mask, 41, 20), 0);
+TEST(Line, ThatComesFromAfarHasTheDashesOfTheWholeLine) {
+  Canvas near(60, 40, font()), far(60, 40, font());
+  near.line({{-14, 20}, {74, 20}}, 2, kBlack, {6, 8});
+  far.line({{-14 - 14e5, 20}, {-14 - 7e5, 20}, {74 + 14e5, 20}}, 2, kBlack, {6, 8});
+  for (int x = 0; x < 60; ++x) EXPECT_NEAR(ink(near, x, 20), ink(far, x, 20), 2) << x;
+  // Out of the picture and in again.
+  const std::vector<LinePart> parts =
+      visible_parts({{0, 20}, {0, -500}, {40, -500}, {40, 20}}, 2, {6, 8}, {0, 0, 60, 40});
+  ASSERT_EQ(parts.size(), 2u);
+  EXPECT_DOUBLE_EQ(parts[1].points.front().y, -2);
+  EXPECT_NEAR(parts[1].dash.from, std::fmod(520 + 40 + 498, 14), 1e-9);
+}
+
+TEST(Polygon, BandsLieBetweenTheirLines) {
+  Canvas canvas(60, 40, font());
+  canvas.polygon({{12, 15}, {22, 15}, {40, 12}, {40, 25}, {22, 18.6}, {12, 18.6}}, kBlack, 1, {10, 10, 40, 20});
+  EXPECT_EQ(ink(canvas, 11, 16), 0);
+  EXPECT_EQ(ink(canvas, 14, 14), 0);
+  EXPECT_EQ(ink(canvas, 14, 15), 255);
+  EXPECT_EQ(ink(canvas, 14, 17), 255);
+  EXPECT_NEAR(ink(canvas, 14, 18), 153, 1) << "nine of the fifteen rows of a pixel that cairo looks at";
+  EXPECT_EQ(ink(canvas, 14, 19), 0);
+  EXPECT_EQ(ink(canvas, 39, 20), 255);
+  EXPECT_EQ(ink(canvas, 41, 20), 0);
+}
+
+TEST(Polygon, EndsAtItsBox) {
+  Canvas canvas(60, 40, font());
+  canvas.polygon({{-1e300, -1e300}, {1e300, -1e300}, {1e300, 1e300}, {-1e300, 1e300}}, kBlack, 0.5, {10, 10, 40, 20});
+  for (const auto& [x, y] : {std::pair(10, 10), {49, 10}, {49, 29}, {10, 29}}) EXPECT_NEAR(ink(canvas, x, y), 127.5, 1);
+  for (const auto& [x, y] : {std::pair(9, 10), {50, 10}, {49, 30}, {10, 9}}) EXPECT_EQ(ink(canvas, x, y), 0);
+}
+
+TEST(Canvas, SquaresAndShadesHaveTheirColours) {
+  Canvas canvas(30, 30, font());
+  std::vector<Rgb> colours;
+  for (int i = 0; i < 9; ++i) colours.push_back(i % 4 ? kBlack : Rgb{uint8_t(20 * i), 50, 60});
+  canvas.squares(0, 0, 10, 3, colours);
+  for (int y = 0; y < 30; ++y)
+    for (int x = 0; x < 30; ++x) ASSERT_EQ(canvas.at(x, y), colours[size_t(y / 10 * 3 + x / 10)]) << x << ", " << y;
+  canvas.shades({5, 5, 10, 11}, [](double share) { return Rgb{uint8_t(std::lround(100 * share)), 0, 0}; });
+  for (int y = 0; y < 11; ++y) EXPECT_EQ(canvas.at(14, 5 + y).r, 10 * y);
+  EXPECT_EQ(canvas.at(15, 5), colours[1]);
 }
 
 std::vector<std::string> labels(double low, double high, int most) {
