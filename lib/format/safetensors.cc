@@ -121,6 +121,18 @@ void SafeTensors::get(const std::string& name, T* values, size_t count) const {
   std::copy(found.begin(), found.end(), values);
 }
 
+std::vector<uint64_t> SafeTensors::get_bits(const std::string& name) const {
+  const auto found = tensors.find(name);
+  if (found != tensors.end() && found->second.type == TensorType::kU64) return get<uint64_t>(name);
+  const std::vector<int64_t> values = get<int64_t>(name);
+  return {values.begin(), values.end()};
+}
+
+void SafeTensors::add_bits(const std::string& name, const std::vector<uint64_t>& values) {
+  const std::vector<int64_t> bits(values.begin(), values.end());
+  add(name, {int64_t(bits.size())}, bits.data(), bits.size());
+}
+
 const std::string& SafeTensors::meta(const std::string& key) const {
   const auto found = metadata.find(key);
   if (found == metadata.end()) fail(Exit::kData, "no metadata '", key, "'");
@@ -217,6 +229,10 @@ std::string format_safetensors(const SafeTensors& file) {
   }
   std::string text = header.dump();
   text.resize((text.size() + 7) / 8 * 8, ' ');
+  // What is written can be read.
+  if (text.size() > kHeaderLimit)
+    fail(Exit::kData, "a header of ", text.size(), " bytes, readers of the format take ", kHeaderLimit);
+  parse_json(text, kHeaderLimits);
   const uint64_t length = text.size();
   std::string out(reinterpret_cast<const char*>(&length), sizeof length);
   out.reserve(out.size() + text.size() + at);

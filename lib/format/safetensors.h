@@ -35,6 +35,10 @@ struct SafeTensors {
   void get(const std::string& name, T* values, size_t count) const;
   template <class T>
   std::vector<T> get(const std::string& name) const;
+  // The 64 bits of numbers without a sign, which are written as I64, a type that every reader of the format has; U64
+  // does as well. Throws kData for another type.
+  std::vector<uint64_t> get_bits(const std::string& name) const;
+  void add_bits(const std::string& name, const std::vector<uint64_t>& values);
   bool has(const std::string& name) const { return tensors.count(name) > 0; }
   // A metadata entry; throws kData when it is missing.
   const std::string& meta(const std::string& key) const;
@@ -42,7 +46,8 @@ struct SafeTensors {
 
 // Throws kData for anything that is not a whole, well-formed file; memory is taken only as bytes arrive.
 SafeTensors read_safetensors(Input& input);
-// Tensors by the width of their types, then by name, header keys sorted: the same content gives the same bytes.
+// Tensors by the width of their types, then by name, header keys sorted: the same content gives the same bytes. Throws
+// kData where read_safetensors() would refuse the header for its size.
 std::string format_safetensors(const SafeTensors& file);
 
 }  // namespace synpo

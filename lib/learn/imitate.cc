@@ -78,8 +78,9 @@ Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& c
   get_tensors(file, averaged ? "train/raw/" : "", statistics, model_.statistics.data());
   get_tensors(file, "train/m/", parameters, first_moment_.data());
   get_tensors(file, "train/v/", parameters, second_moment_.data());
-  uint64_t position[4];
-  file.get("train/position", position, 4);
+  const std::vector<uint64_t> position = file.get_bits("train/position");
+  if (position.size() != 4)
+    fail(Exit::kData, "tensor 'train/position': found ", position.size(), " values, expected 4");
   stream_lines_ = position[0];
   stream_hash_ = position[1];
   total_updates_ = int64_t(std::min<uint64_t>(position[2], INT64_MAX));
@@ -247,8 +248,7 @@ Checkpoint Imitation::checkpoint(bool with_training_state) {
   }
   add_tensors(c.file, "train/m/", parameters, first_moment_.data());
   add_tensors(c.file, "train/v/", parameters, second_moment_.data());
-  const uint64_t position[4] = {stream_lines_, stream_hash_, uint64_t(total_updates_), seen_grows_};
-  c.file.add("train/position", {4}, position, 4);
+  c.file.add_bits("train/position", {stream_lines_, stream_hash_, uint64_t(total_updates_), seen_grows_});
   memory_.save(c.file, "train/memory/", world_);
   if (options_.batch_states > 0) running_.save(c.file, "train/running/");
   return c;

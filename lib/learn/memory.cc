@@ -42,14 +42,14 @@ void ReplayMemory::save(SafeTensors& file, const std::string& prefix, const Worl
     bytes.insert(bytes.end(), e.labels.begin(), e.labels.end());
   }
   file.add(prefix + "episodes", {int64_t(bytes.size())}, bytes.data(), bytes.size());
-  file.add(prefix + "serials", {int64_t(serials_.size())}, serials_.data(), serials_.size());
-  file.add(prefix + "added", {1}, &added_, 1);
+  file.add_bits(prefix + "serials", serials_);
+  file.add_bits(prefix + "added", {added_});
 }
 
 void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, const World& world) {
   const std::vector<uint8_t> bytes = file.get<uint8_t>(prefix + "episodes");
-  serials_ = file.get<uint64_t>(prefix + "serials");
-  file.get(prefix + "added", &added_, 1);
+  serials_ = file.get_bits(prefix + "serials");
+  const std::vector<uint64_t> added = file.get_bits(prefix + "added");
   episodes_.clear();
   const Head head(world);
   const auto bad = [&] { fail(Exit::kData, "tensor '", prefix, "episodes' is malformed"); };
@@ -78,6 +78,8 @@ void ReplayMemory::load(const SafeTensors& file, const std::string& prefix, cons
       if (world.step(e.pair, state, e.actions[i]).ended() && i + 1 < steps) bad();
     episodes_.push_back(std::move(e));
   }
+  if (added.size() != 1) bad();
+  added_ = added[0];
   if (episodes_.size() > capacity_ || serials_.size() != episodes_.size()) bad();
   // Until the memory is full, the next episode comes after the last one.
   if (added_ < episodes_.size() || (added_ > episodes_.size() && episodes_.size() < capacity_)) bad();

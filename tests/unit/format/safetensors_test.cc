@@ -208,6 +208,33 @@ TEST(SafeTensors, TensorsLieOneAfterTheOther) {
   EXPECT_EQ(two("[4,8]", "[0,4]", 8), "nothing thrown");
 }
 
+TEST(SafeTensors, ThatNobodyCouldReadAreNotWritten) {
+  SafeTensors wordy;
+  wordy.metadata["x"] = std::string(100'000'000, 'x');
+  EXPECT_EQ(thrown([&] { format_safetensors(wordy); }),
+            "65 a header of 100000032 bytes, readers of the format take 100000000");
+  wordy.metadata["x"].resize(100'000'000 - 26);
+  EXPECT_EQ(tensors_of(format_safetensors(wordy)).metadata, wordy.metadata);
+  SafeTensors many;
+  for (int i = 0; i < 120000; ++i) many.tensors[std::to_string(i)].shape = {0};
+  EXPECT_EQ(thrown([&] { format_safetensors(many); }), "65 more than 1048576 values and names");
+}
+
+TEST(SafeTensors, NumbersWithoutASignAreBitsOfI64) {
+  const std::vector<uint64_t> numbers = {0, 7, uint64_t(INT64_MAX) + 1, UINT64_MAX};
+  SafeTensors file;
+  file.add_bits("n", numbers);
+  EXPECT_EQ(file.get<int64_t>("n"), (std::vector<int64_t>{0, 7, INT64_MIN, -1}));
+  EXPECT_EQ(file.get_bits("n"), numbers);
+  file.add("n", {4}, numbers.data(), 4);
+  EXPECT_EQ(file.tensors.at("n").type, TensorType::kU64);
+  EXPECT_EQ(file.get_bits("n"), numbers);
+  const float floats[1] = {1};
+  file.add("n", {1}, floats, 1);
+  EXPECT_EQ(thrown([&] { file.get_bits("n"); }), "65 tensor 'n': found type F32, expected I64");
+  EXPECT_EQ(thrown([&] { file.get_bits("m"); }), "65 no tensor 'm'");
+}
+
 TEST(SafeTensors, DamagedFilesAreReadOrRefusedAndNothingElse) {
   const std::string good = format_safetensors(small_file());
   uint64_t length;

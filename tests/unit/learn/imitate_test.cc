@@ -347,6 +347,26 @@ TEST(Imitation, ResumingOnAnotherStreamIsRefused) {
               }).ends_with(": the first 6 lines are not those that the checkpoint was trained on"));
 }
 
+// As programs wrote it whose numbers without a sign were U64.
+TEST(Imitation, GoesOnFromUnsignedNumbersToTheSameBits) {
+  const auto ended = [](bool as_before) {
+    Session first(expert_lines(kSeen, 12)), second(expert_lines(kSeen, 12));
+    first.start(single_steps(), 2);
+    first.update(2);
+    Checkpoint checkpoint = first.run->checkpoint(true);
+    for (const char* name : {"train/position", "train/memory/serials", "train/memory/added"}) {
+      EXPECT_EQ(checkpoint.file.tensors.at(name).type, TensorType::kI64) << name;
+      if (as_before) checkpoint.file.tensors.at(name).type = TensorType::kU64;
+    }
+    const auto is_unsigned = [](const auto& entry) { return entry.second.type == TensorType::kU64; };
+    EXPECT_EQ(std::ranges::count_if(checkpoint.file.tensors, is_unsigned), as_before ? 3 : 0);
+    second.resume(format_checkpoint(checkpoint), 2);
+    second.update(2);
+    return second.saved();
+  };
+  EXPECT_TRUE(ended(true) == ended(false));
+}
+
 TEST(Imitation, RefusesDamagedTrainingState) {
   Session session(expert_lines(kSeen, 12));
   session.start(single_steps(), 2);

@@ -1,0 +1,36 @@
+# Checkpoints are safetensors files that every loader of the format takes.
+load ../common
+
+setup_file() { make_inputs; }
+setup() { set_up pairs.tsv e.jsonl; }
+
+strict() { /usr/bin/python3 "$ROOT/tests/cli/package/strict_safetensors.py" "$@"; }
+
+@test "whole, stripped and tuned checkpoints hold types that the oldest loaders know, one after the other" {
+    synpo-train "${TINY[@]}" -n 2 -p pairs.tsv --save whole.ckpt -o stripped.ckpt --strip <e.jsonl
+    synpo-train "${TINY_PAPER[@]}" -n 2 -p pairs.tsv -m modulenet <e.jsonl >paper.ckpt
+    synpo-finetune ppo -q --steps 300 --lanes 2 <whole.ckpt >tuned.ckpt
+    strict whole.ckpt stripped.ckpt paper.ckpt tuned.ckpt >got
+    [ "$(wc -l <got)" -eq 4 ]
+    grep -qE '^whole.ckpt F32:[0-9]+ I64:5 U8:2$' got
+    grep -qE '^stripped.ckpt F32:[0-9]+$' got
+    grep -qE '^paper.ckpt F32:[0-9]+ I64:3 U8:1$' got
+    grep -qE '^tuned.ckpt F32:[0-9]+ I64:3 U8:1$' got
+    # The reader does refuse.
+    sed 's/"I64"/"U64"/' whole.ckpt >old.ckpt
+    ! strict old.ckpt 2>err
+    grep -q 'type U64' err
+}
+
+@test "a checkpoint with unsigned numbers, as older ones have them, is gone on from to the same bits" {
+    synpo-train "${TINY[@]}" -n 4 -p pairs.tsv <e.jsonl >four.ckpt
+    synpo-train "${TINY[@]}" -n 2 -p pairs.tsv <e.jsonl >two.ckpt
+    cp two.ckpt old.ckpt
+    for name in train/position train/memory/serials train/memory/added; do
+        sed -i -E "s|(\"$name\":\{\"data_offsets\":[^]]*\],\"dtype\":)\"I64\"|\1\"U64\"|" old.ckpt
+    done
+    [ "$(grep -aoc '"U64"' old.ckpt)" -eq 1 ]
+    [ "$(grep -ao '"U64"' old.ckpt | wc -l)" -eq 3 ]
+    for from in two old; do synpo-train -q --resume $from.ckpt -n 4 <e.jsonl >$from-four.ckpt; done
+    cmp two-four.ckpt old-four.ckpt
+}
