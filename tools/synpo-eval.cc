@@ -104,6 +104,7 @@ int body(int argc, char** argv) {
             "write the episodes to FILE as trajectories with the expert's labels; - is stdout, in place of the matrix",
             record_path)
       .flag(0, "end", "the record's last line says how many episodes it has", says_end)
+      .flag(0, "scores", "the trajectories have the policy's scores and probabilities at every step", plan.scores)
       .choice(0, "starts", "USE", "start states: evaluation, or training for records to learn from, without a matrix",
               starts, {"evaluation", "training"})
       .text('o', "output", "FILE", "write the matrix to FILE", output_path)
@@ -113,6 +114,7 @@ int body(int argc, char** argv) {
   const bool for_training = starts == "training";
   if (for_training && record_path.empty()) fail(Exit::kUsage, "--starts training goes with --record");
   if (says_end && record_path.empty()) fail(Exit::kUsage, "--end goes with --record");
+  if (plan.scores && record_path.empty()) fail(Exit::kUsage, "--scores goes with --record");
   if (for_training && options.given("output"))
     fail(Exit::kUsage, "--starts training writes no matrix: -o does not go with it");
 

@@ -1,5 +1,6 @@
 #include "format/trajectory.h"
 
+#include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -69,6 +70,22 @@ void check_version(const Json& object) {
     fail(Exit::kData, "version ", version, ", this build reads 1 to ", kTrajectoryVersion);
 }
 
+// An array for each step, of numbers with as many digits as tell them apart from all others of their type.
+template <class T>
+void append_steps(std::string& to, const char* name, const std::vector<T>& values, int actions) {
+  to += concat(",\"", name, "\":[");
+  char text[32];
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (i % size_t(actions) == 0) to += i == 0 ? "[" : "],[";
+    if (i % size_t(actions) != 0) to += ',';
+    if (std::isfinite(values[i]))
+      to.append(text, std::to_chars(text, text + sizeof text, values[i]).ptr);
+    else
+      to += "null";
+  }
+  to += "]]";
+}
+
 }  // namespace
 
 std::string format_trajectory(const Trajectory& t) {
@@ -98,7 +115,13 @@ std::string format_trajectory(const Trajectory& t) {
   line["success"] = t.success;
   line["terminated"] = t.terminated;
   line["truncated"] = t.truncated;
-  return line.dump();
+  std::string text = line.dump();
+  if (t.policy.scores.empty()) return text;
+  text.pop_back();
+  text += concat(",\"temperature\":", Json(t.policy.temperature).dump());
+  append_steps(text, "scores", t.policy.scores, t.policy.actions);
+  append_steps(text, "probabilities", t.policy.probabilities, t.policy.actions);
+  return text + "}";
 }
 
 Trajectory parse_trajectory(const std::string& line, int step_limit) {

@@ -14,6 +14,14 @@ namespace synpo {
 constexpr int kTrajectoryVersion = 1;
 constexpr int kMostActions = 256;  // of any world
 
+// What a policy thought of every action at every step.
+struct StepScores {
+  int actions = 0;                    // of the world
+  double temperature = 0;             // that actions were drawn with, 0: the best one was taken
+  std::vector<float> scores;          // [steps, actions]
+  std::vector<double> probabilities;  // of being taken, [steps, actions]
+};
+
 struct Trajectory {
   std::string world = "gridworld";
   int rules = 1;          // version of the world's rules
@@ -27,9 +35,10 @@ struct Trajectory {
   std::vector<uint8_t> labels;    // the expert's action at every step; empty: the same as `actions`
   std::vector<int> reward_cents;  // a step's reward in hundredths
   bool success = false, terminated = false, truncated = false;
+  StepScores policy;  // empty where it is not recorded, and in all that is read
 };
 
-// One line, without the newline.
+// One line, without the newline. Scores read back as the same floats and probabilities as the same doubles.
 std::string format_trajectory(const Trajectory& trajectory);
 
 // Throws kData with what was found and what was expected (the caller adds the line). Unknown fields are passed over.

@@ -48,6 +48,7 @@ Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64
   t.success = record.last.success;
   t.terminated = record.last.terminated;
   t.truncated = record.last.truncated;
+  t.policy = record.policy;
   return t;
 }
 

@@ -44,6 +44,7 @@ struct EpisodeRecord {
   Episode episode;
   std::vector<int> reward_cents;
   WorldStep last = {};
+  StepScores policy;  // empty, or of every step
 };
 // Its file form, as number `number` of its pair and seed.
 Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64_t seed, int64_t number, int window);

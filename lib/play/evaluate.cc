@@ -19,14 +19,33 @@
 namespace synpo {
 namespace {
 
-// The best action, or one drawn from softmax(scores / temperature) where that is over 0; uniform() gives a number in
-// [0, 1).
+using Probabilities = std::array<double, kMostActions>;
+
+// Those of softmax(scores / temperature) or, where that is 0, of taking the best action.
+Probabilities probabilities(const float* scores, int actions, double temperature) {
+  Probabilities p;
+  if (temperature != 0) {
+    softmax(scores, actions, temperature, p.data());
+  } else {
+    std::fill_n(p.begin(), actions, 0);
+    p[size_t(argmax(scores, actions))] = 1;
+  }
+  return p;
+}
+
+// The best action, or one drawn where the temperature is over 0; uniform() gives a number in [0, 1).
 template <class Uniform>
 int choose(const float* scores, int actions, double temperature, Uniform&& uniform) {
   if (temperature == 0) return argmax(scores, actions);
-  std::array<double, kMostActions> p;
-  softmax(scores, actions, temperature, p.data());
-  return draw(p.data(), actions, uniform());
+  return draw(probabilities(scores, actions, temperature).data(), actions, uniform());
+}
+
+void note_scores(const float* scores, int actions, double temperature, StepScores& to) {
+  const Probabilities p = probabilities(scores, actions, temperature);
+  to.actions = actions;
+  to.temperature = temperature;
+  to.scores.insert(to.scores.end(), scores, scores + actions);
+  to.probabilities.insert(to.probabilities.end(), p.begin(), p.begin() + actions);
 }
 
 }  // namespace
@@ -106,6 +125,7 @@ std::vector<Outcomes> evaluate(Parallel& parallel, Engine& engine, const World& 
                         uint64_t(job.episode.number) << 16 | episode.now().steps)
               .uniform();
         });
+        if (sink && options.scores) note_scores(scores, actions, options.temperature, records[size_t(place)].policy);
         scores += actions;
         const int label = sink ? world.expert(episode.pair, episode.now()) : 0;
         const WorldStep step = episode.step(world, action);
@@ -129,8 +149,9 @@ Matrix success_matrix(Parallel& parallel, const World& world, Model& model, cons
                                   return EvalEpisode{int(position / plan.count), plan.first + position % plan.count};
                                 }};
   model.engine->prepare_inference(parallel, model.parameters.data(), model.statistics.data(), numbers);
-  const std::vector<Outcomes> results = evaluate(parallel, *model.engine, world, pairs, episodes,
-                                                 {plan.seed, model.window, plan.temperature, plan.use}, sink, progress);
+  const std::vector<Outcomes> results =
+      evaluate(parallel, *model.engine, world, pairs, episodes,
+               {plan.seed, model.window, plan.temperature, plan.use, plan.scores}, sink, progress);
   Matrix matrix;
   for (size_t p = 0; p < pairs.size(); ++p) {
     const PairRow& pair = plan.pairs[p];

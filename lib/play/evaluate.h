@@ -45,6 +45,7 @@ struct EvalOptions {
   int window = 1;
   double temperature = 0;  // actions are drawn from softmax(scores / temperature); 0: the best one
   EpisodeUse use = kForMatrix;
+  bool scores = false;  // trajectories have the policy's scores and probabilities
 };
 
 // Called with every episode in the order of the plan, one at a time, from any thread.
@@ -66,6 +67,7 @@ struct MatrixPlan {
   double temperature = 0;
   std::string pairs_file = "";  // that names the pairs, for messages
   EpisodeUse use = kForMatrix;
+  bool scores = false;  // as in EvalOptions
 };
 
 // The success matrix of a policy, a row for each pair in their order; `run` names its weights.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -82,6 +83,24 @@ std::string with(const char* field, const std::string& value) {
 
 std::string refused(const std::string& line) {
   return thrown([&] { parsed(line); });
+}
+
+TEST(Trajectory, ScoresAndProbabilitiesReadBackToTheBit) {
+  Trajectory t = short_trajectory();
+  t.policy = {2, 0.5, {0.1f, 1 / 3.0f, -3.4e38f, 1e-45f, 16777216, -0.0f}, {0.1, 1 / 3.0, 1, 5e-324, 0, 1 - 1e-16}};
+  const std::string line = format_trajectory(t);
+  const nlohmann::json object = nlohmann::json::parse(line);
+  EXPECT_EQ(object["temperature"], 0.5);
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(float(object["scores"][i / 2][i % 2].get<double>()), t.policy.scores[i]) << i;
+    EXPECT_EQ(object["probabilities"][i / 2][i % 2].get<double>(), t.policy.probabilities[i]) << i;
+  }
+  EXPECT_EQ(object["scores"].size(), 3u);
+  EXPECT_TRUE(line.find("\"scores\":[[0.1,0.33333334],[") != std::string::npos) << line;
+  expect_equal(parsed(line), short_trajectory());
+  t.policy.scores[1] = NAN;
+  t.policy.scores[2] = INFINITY;
+  EXPECT_TRUE(format_trajectory(t).find("\"scores\":[[0.1,null],[null,") != std::string::npos);
 }
 
 TEST(Trajectory, UnknownFieldsArePassedOver) {
