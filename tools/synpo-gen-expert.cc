@@ -1,4 +1,5 @@
-// Expert trajectories, and expert labels for anyone's trajectories, as JSON Lines on stdout.
+// Expert trajectories, and expert labels for anyone's trajectories, as JSON Lines on stdout; and the worlds themselves,
+// for other programs to play in.
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -12,6 +13,7 @@
 #include "base/text.h"
 #include "format/trajectory.h"
 #include "play/episode.h"
+#include "play/serve/episode_server.h"
 #include "play/world_factory.h"
 #include "world/world.h"
 
@@ -41,11 +43,12 @@ int gen_expert(int argc, char** argv) {
   std::string world_name = "gridworld", pairs_path, output_path = "-";
   ExpertStream stream;
   int64_t count = 0;
-  bool relabel_stream = false, says_end = false, quiet = false;
-  Options options("synpo-gen-expert",
-                  "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [--end] [-w WORLD] [-o FILE] < "
-                  "TRAJECTORIES",
-                  "Writes trajectories of the shortest-path expert, a JSON object a line.");
+  bool relabel_stream = false, serve = false, says_end = false, quiet = false;
+  Options options(
+      "synpo-gen-expert",
+      "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [--end] [-w WORLD] [-o FILE] < "
+      "TRAJECTORIES\n       synpo-gen-expert --serve [-w WORLD] [-p PAIRS] [--window R] < REQUESTS > ANSWERS",
+      "Writes trajectories of the shortest-path expert, a JSON object a line.");
   options
       .text('p', "pairs", "FILE", "pairs to draw from: TSV env, task, seen; rows with seen = 1 (all pairs)", pairs_path)
       .integer('n', "count", "N", "trajectories, each of a random pair; 0: until the reader goes away", count, 0,
@@ -56,6 +59,7 @@ int gen_expert(int argc, char** argv) {
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's",
             stream.noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
+      .flag(0, "serve", "play what another program asks for: requests on stdin, observations on stdout", serve)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
       .flag(0, "end", "a last line says how many trajectories there are (--relabel: if it did so there)", says_end)
       .text('w', "world", "WORLD", alternatives(world_names()), world_name)
@@ -65,6 +69,9 @@ int gen_expert(int argc, char** argv) {
   if (relabel_stream)
     for (const char* other : {"pairs", "count", "per-pair", "noise", "seed", "window"})
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
+  if (serve)
+    for (const char* other : {"count", "per-pair", "noise", "seed", "relabel", "end", "output"})
+      if (options.given(other)) fail(Exit::kUsage, "--serve does not go with --", other);
   if (stream.per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
   if (says_end && !relabel_stream && stream.per_pair == 0 && count == 0)
     fail(Exit::kUsage, "--end goes with -n or --per-pair: a stream without an end never says it");
@@ -80,6 +87,12 @@ int gen_expert(int argc, char** argv) {
   }
   stream.pairs =
       pairs_path.empty() ? resolve_pairs(world, all_pairs(world), false, "") : read_seen_pairs(world, pairs_path);
+  if (serve) {
+    Input input("-");
+    EpisodeServer(world, stream.pairs, stream.window).serve(input, output);
+    output.finish();
+    return 0;
+  }
   const int64_t total = stream.per_pair > 0 ? stream.per_pair * int64_t(stream.pairs.size()) : count;
   Progress progress("synpo-gen-expert", "trajectories", total, quiet || output.is_stdout());
   for (int64_t i = 0; total == 0 || i < total; ++i) {

@@ -1,0 +1,645 @@
+"""synpo's files and worlds in Python. One file; it needs numpy, and torch where a policy is to act.
+
+    import synpo
+
+    matrix = synpo.read_matrix("synpo.tsv")             # {column: array}
+    log = synpo.read_log("run.log")                     # {column: array}, NaN where the log has NA
+    for episode in synpo.read_trajectories("e.jsonl"):  # one dict each
+        print(episode["env"], episode["actions"])
+    checkpoint = synpo.read_checkpoint("synpo.ckpt")    # .metadata, .tensors, .envs, .tasks
+
+    env = synpo.Env("gridworld", pairs="pairs.tsv")     # as Gymnasium has it, which need not be there
+    policy = synpo.load_policy("synpo.ckpt")            # a torch.nn.Module whose outputs are synpo's scores
+    observation, info = env.reset(seed=1)
+    while True:
+        action = policy.act(observation, info["env"], info["task"])
+        observation, reward, terminated, truncated, info = env.step(action)
+        if terminated or truncated:
+            break
+
+The formats are described in synpo-matrix(5), synpo-log(5), synpo-trajectory(5), synpo-checkpoint(5) and
+synpo-serve(5). A file that is not as they say is refused with ValueError, which names it and the place.
+"""
+import json
+import os
+import struct
+import subprocess
+
+import numpy as np
+
+try:
+    import torch
+except ImportError:
+    torch = None
+try:
+    import gymnasium
+except ImportError:
+    gymnasium = None
+
+__all__ = ["read_matrix", "rates", "read_log", "read_trajectories", "Checkpoint", "read_checkpoint", "read_safetensors",
+           "load_policy", "Server", "Env", "BatchEnv"]
+
+
+# --- tables ------------------------------------------------------------------------------------------------
+
+def _read_table(path):
+    """The header and the rows of a tab-separated table, as texts."""
+    with open(path, encoding="utf-8", newline="") as file:
+        lines = file.read().split("\n")
+    if len(lines) < 2:
+        raise ValueError(f"{path}: no header line")
+    cut_off = lines.pop()  # what comes after the last LF
+    header = lines[0].split("\t")
+    rows = [line.split("\t") for line in lines[1:]]
+    for number, row in enumerate(rows, 2):
+        if len(row) != len(header):
+            raise ValueError(f"{path}: line {number}: found {len(row)} fields, expected {len(header)}")
+    return header, rows, cut_off
+
+
+_MATRIX_TEXTS = {"run", "world", "method", "env", "task", "part", "env_hash"}
+_MATRIX_REALS = {"reward", "temperature"}
+_MATRIX_COUNTS = {"window", "seed", "updates", "eval_seed", "first_episode", "seen", "episodes", "successes", "wrong",
+                  "timeouts", "length", "new"}
+
+
+def read_matrix(path):
+    """A success matrix as {column: array}: counts are int64 (seeds of 2^63 and more uint64), reward and temperature
+    float64 with NaN where the field is empty, all else text. pandas.DataFrame() takes it as it is."""
+    header, rows, cut_off = _read_table(path)
+    if cut_off:
+        raise ValueError(f"{path}: the last line has no end")
+    for column in ("env", "task", "episodes", "successes"):
+        if column not in header:
+            raise ValueError(f"{path}: no column '{column}'")
+    matrix = {}
+    for i, column in enumerate(header):
+        fields = [row[i] for row in rows]
+        try:
+            if column in _MATRIX_REALS:
+                matrix[column] = np.array([float(field) if field else np.nan for field in fields])
+            elif column in _MATRIX_COUNTS:
+                values = [int(field) for field in fields]
+                matrix[column] = np.array(values, np.uint64 if max(values, default=0) >= 2**63 else np.int64)
+            else:
+                matrix[column] = np.array(fields, dtype=object)
+        except ValueError as error:
+            raise ValueError(f"{path}: column '{column}': {error}") from None
+    return matrix
+
+
+def rates(matrix):
+    """Success rates of a matrix as an array [tasks, envs], with the names of both in the order of their appearance;
+    NaN where a pair has no row. Rows of one pair are added up, whatever their runs."""
+    envs, tasks = list(dict.fromkeys(matrix["env"])), list(dict.fromkeys(matrix["task"]))
+    successes, episodes = np.zeros((2, len(tasks), len(envs)))
+    at = [tasks.index(task) for task in matrix["task"]], [envs.index(env) for env in matrix["env"]]
+    np.add.at(successes, at, matrix["successes"])
+    np.add.at(episodes, at, matrix["episodes"])
+    with np.errstate(invalid="ignore"):
+        return successes / episodes, tasks, envs
+
+
+def read_log(path):
+    """A run log as {column: float64 array}, NaN where it has NA. Of an update that stands there twice, as after a
+    resumption, the later row counts; a last row that is cut off is left out."""
+    header, rows, _ = _read_table(path)
+    try:
+        table = np.array([[np.nan if field == "NA" else float(field) for field in row] for row in rows])
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    table = table.reshape(len(rows), len(header))
+    last = {update: row for row, update in enumerate(table[:, 0])}
+    return {column: table[sorted(last.values()), i] for i, column in enumerate(header)}
+
+
+# --- trajectories ------------------------------------------------------------------------------------------
+
+_TRAJECTORY_ARRAYS = {"actions": np.int64, "labels": np.int64, "rewards": np.float64, "scores": np.float32,
+                      "probabilities": np.float64}
+
+
+def read_trajectories(source):
+    """The episodes of a file (by its name, or an open one) one by one, each the dict of its line with arrays for
+    actions, labels, rewards and, where they were recorded, scores (float32) and probabilities. Labels are always
+    there. A stream that says its end is refused there where something is missing."""
+    if isinstance(source, (str, os.PathLike)):
+        with open(source, encoding="utf-8") as file:
+            yield from read_trajectories(file)
+        return
+    name = getattr(source, "name", "the stream")
+    count, said = 0, None
+    for number, line in enumerate(source, 1):
+        try:
+            episode = json.loads(line)
+            if not isinstance(episode, dict) or episode.get("format") not in ("synpo-trajectory", "synpo-end"):
+                raise ValueError("not a synpo trajectory")
+            if episode["version"] != 1:
+                raise ValueError(f"version {episode['version']}, this reader knows 1")
+            if episode["format"] == "synpo-end":
+                said = (said or 0) + int(episode["trajectories"])
+                continue
+            count += 1
+            episode.setdefault("labels", episode["actions"])
+            for field, kind in _TRAJECTORY_ARRAYS.items():
+                if field in episode:
+                    episode[field] = np.array(episode[field], kind)
+                    if len(episode[field]) != len(episode["actions"]):
+                        raise ValueError(f"'{field}' and 'actions' differ in length")
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"{name}: line {number}: {error}") from None
+        except KeyError as error:
+            raise ValueError(f"{name}: line {number}: no field {error}") from None
+        yield episode
+    if said is not None and said != count:
+        raise ValueError(f"{name}: found {count} trajectories, its end says {said}")
+
+
+# --- checkpoints -------------------------------------------------------------------------------------------
+
+_TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "I32": "<i4", "U64": "<u8", "U8": "u1"}
+_MOST_HEADER = 100_000_000
+
+
+def read_safetensors(path):
+    """(metadata, {name: array}) of a safetensors file. BF16 comes as float32; numpy does not have it."""
+    with open(path, "rb") as file:
+        head = file.read(8)
+        if len(head) < 8:
+            raise ValueError(f"{path}: it ends at byte {len(head)}, expected a safetensors header")
+        size, = struct.unpack("<Q", head)
+        if not 2 <= size <= _MOST_HEADER:
+            raise ValueError(f"{path}: not a safetensors file (header length {size})")
+        text = file.read(size)
+        try:
+            header = json.loads(text.decode("utf-8"))
+            metadata = header.pop("__metadata__", {})
+        except (ValueError, AttributeError) as error:
+            raise ValueError(f"{path}: not a safetensors file ({error})") from None
+        data = file.read()
+    tensors, at = {}, 0
+    try:
+        for name, entry in sorted(header.items(), key=lambda item: item[1]["data_offsets"]):
+            begin, end = entry["data_offsets"]
+            if entry["dtype"] not in _TYPES:
+                raise ValueError(f"{path}: tensor '{name}': type {entry['dtype']}")
+            if begin != at or end > len(data):
+                raise ValueError(f"{path}: tensor '{name}': found bytes {begin} to {end}, expected {at} to {len(data)}")
+            array = np.frombuffer(data[begin:end], _TYPES[entry["dtype"]]).reshape(entry["shape"])
+            if entry["dtype"] == "BF16":
+                array = (array.astype("<u4") << 16).view("<f4")
+            tensors[name] = array
+            at = end
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"{path}: the header is not as safetensors has it ({error!r})") from None
+    if at != len(data):
+        raise ValueError(f"{path}: bytes follow the last tensor")
+    return metadata, tensors
+
+
+class Checkpoint:
+    """A policy with its world. `metadata` is as synpo-checkpoint(5) has it, with numbers and structures parsed;
+    `tensors` are arrays by name; `envs` and `tasks` are names in the order of their embeddings, `seen` is a list of
+    pairs of names."""
+
+    def __init__(self, metadata, tensors, path="checkpoint"):
+        if metadata.get("format") != "synpo-checkpoint":
+            raise ValueError(f"{path}: not a synpo checkpoint")
+        self.path, self.tensors, self.metadata = path, tensors, dict(metadata)
+        try:
+            for key in ("version", "rules", "window", "updates", "states", "seed"):
+                self.metadata[key] = int(metadata[key])
+            for key in ("shape", "options", "tasks", "envs", "seen"):
+                self.metadata[key] = json.loads(metadata[key])
+            self.envs = [env["name"] for env in self.metadata["envs"]]
+            self.method, self.world = metadata["method"], metadata["world"]
+        except KeyError as error:
+            raise ValueError(f"{path}: no metadata {error}") from None
+        except (ValueError, TypeError) as error:
+            raise ValueError(f"{path}: {error}") from None
+        if self.metadata["version"] != 1:
+            raise ValueError(f"{path}: version {metadata['version']}, this reader knows 1")
+        self.tasks, self.shape, self.window = self.metadata["tasks"], self.metadata["shape"], self.metadata["window"]
+        self.seen = [tuple(pair) for pair in self.metadata["seen"]]
+
+
+def read_checkpoint(path):
+    return Checkpoint(*read_safetensors(path), path)
+
+
+# --- the policy --------------------------------------------------------------------------------------------
+
+STRIDES = (2, 2, 2, 1)
+HISTORY = 4  # views in an observation
+HAND = 16    # numbers after those of a kitchen's views
+
+if torch is not None:
+    from torch import nn
+    from torch.nn import functional as F
+
+    class _Block(nn.Module):
+        def __init__(self, inputs, outputs, stride, first):
+            super().__init__()
+            self.conv1 = nn.Conv2d(inputs, outputs, 3, stride, 1, bias=False)
+            self.norm1 = nn.BatchNorm2d(outputs)
+            self.conv2 = nn.Conv2d(outputs, outputs, 3, 1, 1, bias=False)
+            self.norm2 = nn.BatchNorm2d(outputs)
+            self.first = first
+            if first:
+                self.shortcut = nn.Conv2d(inputs, outputs, 1, stride, bias=False)
+                self.shortcut_norm = nn.BatchNorm2d(outputs)
+
+        def forward(self, x):
+            y = self.norm2(self.conv2(F.relu(self.norm1(self.conv1(x)))))
+            return F.relu(y + (self.shortcut_norm(self.shortcut(x)) if self.first else x))
+
+    class _Pictures(nn.Module):
+        """psi of pictures, [N, side, side, 12] from 0 to 255 -> [N, d]."""
+
+        def __init__(self, shape):
+            super().__init__()
+            inputs = 3 * HISTORY
+            for s, stride in enumerate(STRIDES, 1):
+                outputs = shape[f"channels{s}"]
+                self.add_module(f"stage{s}", nn.ModuleDict({"block1": _Block(inputs, outputs, stride, True),
+                                                            "block2": _Block(outputs, outputs, 1, False)}))
+                inputs = outputs
+            self.fc = nn.Linear(4 * inputs, shape["feature"])
+            self.normalises = bool(shape["normalise_input"])
+            if self.normalises:
+                self.input = nn.Module()
+                self.input.register_buffer("mean", torch.zeros(3 * HISTORY))
+                self.input.register_buffer("variance", torch.ones(3 * HISTORY))
+
+        def forward(self, x):
+            x = x.to(self.fc.weight.dtype)
+            if self.normalises:
+                x = (x - self.input.mean) / torch.sqrt(self.input.variance + 1e-5)
+            else:
+                x = x / 64
+            x = x.permute(0, 3, 1, 2)
+            for s in range(1, 5):
+                for block in getattr(self, f"stage{s}").values():
+                    x = block(x)
+            return self.fc(x.permute(0, 2, 3, 1).flatten(1))
+
+    class _Features(nn.Module):
+        """psi of a kitchen's features, [N, 4 * view + 16] -> [N, d]."""
+
+        def __init__(self, shape):
+            super().__init__()
+            self.conv1 = nn.Conv1d(shape["view"], shape["view_channels"], 3, 2, 1)
+            self.conv2 = nn.Conv1d(shape["view_channels"], shape["view_channels"], 3, 2, 1)
+            self.object = nn.Parameter(torch.zeros(shape["objects"], shape["object_embedding"]))
+            self.fc = _Mlp(shape["view_channels"] + shape["object_embedding"], shape["view_hidden"], shape["feature"])
+
+        def forward(self, x):
+            x = x.to(self.object.dtype)
+            views = x[:, :-HAND].reshape(len(x), HISTORY, -1).transpose(1, 2)
+            y = F.relu(self.conv2(F.relu(self.conv1(views)))).flatten(1)
+            return self.fc(torch.cat([y, self.object[x[:, -HAND].long()]], 1))
+
+    class _Mlp(nn.Module):
+        def __init__(self, inputs, hidden, outputs):
+            super().__init__()
+            self.hidden = nn.Linear(inputs, hidden)
+            self.out = nn.Linear(hidden, outputs)
+
+        def forward(self, x):
+            return self.out(F.relu(self.hidden(x)))
+
+    class Policy(nn.Module):
+        """A policy of any method. forward() takes observations [N, ...] as Env gives them, and the positions of
+        environment and task [N] in `envs` and `tasks`; it gives synpo's scores [N, actions]. Parameters have synpo's
+        names, in torch's layouts."""
+
+        def __init__(self, checkpoint):
+            super().__init__()
+            shape = self.shape = checkpoint.shape
+            self.method, self.envs, self.tasks = checkpoint.method, checkpoint.envs, checkpoint.tasks
+            self.encoder = (_Features if "view" in shape else _Pictures)(shape)
+            if self.method != "modulenet":
+                names = ["task"] if self.method == "mtl" else ["env", "task"]
+                self.embedding = nn.ParameterDict(
+                    {name: nn.Parameter(torch.zeros(shape[name + "s"], shape["embedding"])) for name in names})
+            self._make_head(shape)
+            self._load(checkpoint)
+            self.eval()
+
+        def _make_head(self, shape):
+            feature, embedding, actions = shape["feature"], shape["embedding"], shape["actions"]
+            wide, both = shape.get("head_hidden", 1024), feature + 2 * embedding
+            if self.method in ("synpo", "mtl"):
+                inputs, mixed = len(self.embedding) * embedding, shape.get("action_embedding", 0)
+                self.alpha = _Mlp(inputs, shape["hidden"], shape["basis"])
+                self.beta = _Mlp(inputs, shape["hidden"], shape["basis"])
+                self.theta = nn.Parameter(torch.zeros(mixed or actions, feature, shape["basis"]))
+                if mixed:
+                    self.phi = nn.Parameter(torch.zeros(actions, mixed))
+                self.policy = nn.ParameterDict({"bias": nn.Parameter(torch.zeros(actions))})
+                self.reward = nn.ParameterDict({"bias": nn.Parameter(torch.zeros(actions))})
+                for name in self.embedding:
+                    self.add_module("f_" + name, _Mlp(shape["basis"], shape["hidden"], embedding))
+            elif self.method == "mlp":
+                self.policy, self.reward = _Mlp(both, wide, actions), _Mlp(both, wide, actions)
+                self.f_env = _Mlp(feature, shape["hidden"], embedding)
+                self.f_task = _Mlp(feature, shape["hidden"], embedding)
+            elif self.method == "modulenet":
+                seam = shape.get("seam", 32)
+                modules = {f"task{i}": _Mlp(feature, wide, seam) for i in range(shape["tasks"])}
+                modules.update({f"env{i}": _Mlp(seam, wide, actions) for i in range(shape["envs"])})
+                self.module = nn.ModuleDict(modules)
+            elif self.method == "sf":
+                self.phi, self.psi = _Mlp(feature, wide, actions * embedding), _Mlp(both, wide, actions * embedding)
+            else:
+                raise ValueError(f"method '{self.method}', this reader knows synpo, mtl, mlp, modulenet and sf")
+
+        def _load(self, checkpoint):
+            state = {}
+            for name, own in self.state_dict().items():
+                if name.endswith("num_batches_tracked"):
+                    continue
+                file_name = _file_name(name)
+                if file_name not in checkpoint.tensors:
+                    raise ValueError(f"{checkpoint.path}: no tensor '{file_name}'")
+                tensor = torch.from_numpy(checkpoint.tensors[file_name].astype(np.float32))
+                if name.endswith(".weight") and "norm" not in name:  # the inputs stand before the outputs in the file
+                    if own.dim() > 2 and tensor.dim() == 2:
+                        tensor = tensor[(None,) * (own.dim() - 2)]
+                    order = tuple(range(tensor.dim()))
+                    tensor = tensor.permute(*order[-1:], *order[-2:-1], *order[:-2])
+                if tensor.shape != own.shape:
+                    raise ValueError(f"{checkpoint.path}: tensor '{file_name}': found shape "
+                                     f"{list(checkpoint.tensors[file_name].shape)}, expected that of the metadata")
+                state[name] = tensor.contiguous()
+            self.load_state_dict(state, strict=False)
+
+        def _embedded(self, name, index):
+            rows = self.embedding[name][index]
+            if not self.shape["normalise_embeddings"]:
+                return rows
+            return rows * torch.sqrt(rows.shape[1] / (rows.square().sum(1, keepdim=True) + 1e-12))
+
+        def forward(self, observations, env, task):
+            psi = self.encoder(observations)
+            if self.method == "modulenet":
+                rows = [self.module[f"env{e}"](self.module[f"task{t}"](row))
+                        for e, t, row in zip(env.tolist(), task.tolist(), psi)]
+                return torch.stack(rows)
+            index = {"env": env, "task": task}
+            z = torch.cat([self._embedded(name, index[name]) for name in ("env", "task") if name in self.embedding], 1)
+            if self.method == "mlp":
+                unit = psi / torch.sqrt(psi.square().sum(1, keepdim=True) + 1e-12)
+                return self.policy(torch.cat([unit, z], 1))
+            if self.method == "sf":
+                features = self.psi(torch.cat([psi, z], 1)).view(len(psi), self.shape["actions"], -1)
+                return (features * self._embedded("task", task)[:, None]).sum(2)
+            theta = torch.einsum("ac,cik->aik", self.phi, self.theta) if hasattr(self, "phi") else self.theta
+            return torch.einsum("ni,aik,nk->na", psi, theta, self.alpha(z)) + self.policy["bias"]
+
+        @torch.no_grad()
+        def scores(self, observations, env, task):
+            """forward() of one observation or of many, as an array; env and task are names or positions, one for all
+            or one for each."""
+            observations = np.asarray(observations)
+            single = observations.ndim == (1 if "view" in self.shape else 3)
+            many = observations[None] if single else observations
+            out = self(torch.as_tensor(many), self._positions(env, self.envs, len(many)),
+                       self._positions(task, self.tasks, len(many))).numpy()
+            return out[0] if single else out
+
+        def act(self, observation, env, task, temperature=0, generator=None):
+            """The best action for one observation or, with a temperature, one drawn by the numpy generator."""
+            scores = self.scores(observation, env, task).astype(np.float64)
+            if temperature == 0:
+                return int(scores.argmax())
+            p = np.exp((scores - scores.max()) / temperature)
+            return int((generator or np.random.default_rng()).choice(len(p), p=p / p.sum()))
+
+        @staticmethod
+        def _positions(which, names, count):
+            which = [which] * count if np.ndim(which) == 0 else list(which)
+            for name in which:
+                if isinstance(name, str) and name not in names:
+                    raise ValueError(f"the policy does not know '{name}'")
+            return torch.tensor([names.index(name) if isinstance(name, str) else int(name) for name in which])
+
+    _NORM_NAMES = {"weight": "scale", "bias": "shift", "running_mean": "mean", "running_var": "variance"}
+
+    def _file_name(name):
+        head, _, last = name.rpartition(".")
+        return f"{head}.{_NORM_NAMES[last]}" if "norm" in head.rpartition(".")[2] else name
+
+
+def load_policy(checkpoint):
+    """The policy of a checkpoint, or of the file of that name, as a torch.nn.Module (class Policy)."""
+    if torch is None:
+        raise ImportError("load_policy needs torch (Debian: python3-torch)")
+    return Policy(checkpoint if isinstance(checkpoint, Checkpoint) else read_checkpoint(checkpoint))
+
+
+# --- the worlds --------------------------------------------------------------------------------------------
+
+_STARTS = ("expert", "evaluation", "training")
+_SUCCESS, _TERMINATED, _TRUNCATED = 1, 2, 4
+
+
+class Server:
+    """synpo-gen-expert --serve, asked in the protocol of synpo-serve(5). Episodes go on in places, numbered from 0."""
+
+    def __init__(self, world="gridworld", pairs=None, window=1, program="synpo-gen-expert"):
+        command = [program, "--serve", "-w", world, "--window", str(window)] + (["-p", str(pairs)] if pairs else [])
+        self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        greeting = self._process.stdout.readline()
+        if not greeting:
+            self._fail()
+        greeting = json.loads(greeting)
+        if greeting["format"] != "synpo-serve" or greeting["version"] != 1:
+            raise ValueError(f"{program}: found the protocol {greeting['format']} {greeting['version']}, "
+                             "expected synpo-serve 1")
+        self.world, self.window, self.step_limit = greeting["world"], greeting["window"], greeting["step_limit"]
+        self.envs = [env["name"] for env in greeting["envs"]]
+        self.env_hashes = {env["name"]: env["hash"] for env in greeting["envs"]}
+        self.tasks, self.actions = greeting["tasks"], greeting["actions"]
+        self.pairs = [tuple(pair) for pair in greeting["pairs"]]
+        view = greeting["observation"]
+        self._bytes = view["bytes"]
+        if "palette" in view:
+            self._palette = np.array(view["palette"], np.uint8)
+            self._codes = (view["side"], view["side"], view["history"])
+            self.observation_shape, self.observation_type = self._codes[:2] + (3 * view["history"],), np.uint8
+        else:
+            self._palette = None
+            self.observation_shape, self.observation_type = (self._bytes // 4,), np.float32
+
+    def reset(self, place, env, task, seed=1, episode=0, starts="expert"):
+        """An episode starts in a place; env and task are positions. Returns the observation."""
+        request = struct.pack("<cIIIQQB", b"r", place, env, task, seed, episode, _STARTS.index(starts))
+        return self._observations(self._ask(request, self._bytes), 1)[0]
+
+    def step(self, places, actions):
+        """Steps in some places: observations [n, ...], rewards [n], success, terminated and truncated [n]."""
+        places, actions = np.asarray(places, "<u4"), np.asarray(actions)
+        if actions.shape != places.shape or ((actions < 0) | (actions >= len(self.actions))).any():
+            raise ValueError(f"found actions {actions}, expected {len(places)} from 0 to {len(self.actions) - 1}")
+        n = len(places)
+        request = struct.pack("<cI", b"s", n) + places.tobytes() + actions.astype(np.uint8).tobytes()
+        answer = self._ask(request, n * (5 + self._bytes))
+        rewards = np.frombuffer(answer, "<i4", n) / 100
+        flags = np.frombuffer(answer, np.uint8, n, 4 * n)
+        return (self._observations(answer[5 * n:], n), rewards, (flags & _SUCCESS) > 0, (flags & _TERMINATED) > 0,
+                (flags & _TRUNCATED) > 0)
+
+    def expert(self, places):
+        """What the expert would do in each of these places [n]."""
+        places = np.asarray(places, "<u4")
+        answer = self._ask(struct.pack("<cI", b"x", len(places)) + places.tobytes(), len(places))
+        return np.frombuffer(answer, np.uint8).astype(np.int64)
+
+    def close(self):
+        if self._process.poll() is None:
+            self._process.stdin.close()
+            self._process.wait()
+        self._process.stdout.close()
+        self._process.stderr.close()
+
+    def _ask(self, request, size):
+        try:
+            self._process.stdin.write(request)
+            self._process.stdin.flush()
+            answer = self._process.stdout.read(size)
+        except BrokenPipeError:
+            answer = b""
+        if len(answer) < size:
+            self._fail()
+        return answer
+
+    def _fail(self):
+        message = self._process.stderr.read().decode(errors="replace").strip()
+        raise RuntimeError(message or f"{self._process.args[0]} ended with {self._process.wait()}")
+
+    def _observations(self, data, count):
+        if self._palette is None:
+            return np.frombuffer(data, "<f4").reshape(count, -1).copy()
+        codes = np.frombuffer(data, np.uint8).reshape((count,) + self._codes)
+        return self._palette[codes].reshape((count,) + self.observation_shape)
+
+
+class BatchEnv:
+    """Episodes in n places side by side, of pairs drawn at random from the server's.
+
+    Where one ends, the next one starts in the same step: the observation is the new one's, and info["final"] has those
+    that were last, by place. Episode k of a seed is the same whatever n is: of the pair and from the start that Env
+    gives it."""
+
+    def __init__(self, count, world="gridworld", pairs=None, window=1, program="synpo-gen-expert"):
+        self.server = Server(world, pairs, window, program)
+        self.count, self._places = count, np.arange(count)
+        self.pairs = np.zeros((count, 2), np.int64)  # (env, task) of each place, by position
+        self._seed, self._next = None, 0
+
+    def reset(self, seed=None):
+        if seed is not None or self._seed is None:
+            self._seed, self._next = _seed(seed), 0
+        observations = np.stack([self._start(place) for place in range(self.count)])
+        return observations, {"env": self.pairs[:, 0].copy(), "task": self.pairs[:, 1].copy()}
+
+    def step(self, actions):
+        observations, rewards, success, terminated, truncated = self.server.step(self._places, actions)
+        info = {"success": success, "final": {}}
+        for place in np.flatnonzero(terminated | truncated):
+            info["final"][int(place)] = observations[place].copy()
+            observations[place] = self._start(int(place))
+        info["env"], info["task"] = self.pairs[:, 0].copy(), self.pairs[:, 1].copy()
+        return observations, rewards, terminated, truncated, info
+
+    def expert(self):
+        return self.server.expert(self._places)
+
+    def close(self):
+        self.server.close()
+
+    def _start(self, place):
+        self.pairs[place] = _drawn_pair(self.server, self._seed, self._next)
+        self._next += 1
+        return self.server.reset(place, *map(int, self.pairs[place]), self._seed, self._next - 1)
+
+
+class Env(gymnasium.Env if gymnasium else object):
+    """One episode after the other, as gymnasium.Env has it; gymnasium need not be there.
+
+    Observations are colours, uint8 [16, 16, 12], in the mazes, and float32 [8208] in the kitchens: what the network
+    of synpo-checkpoint(5) is given. The task is in the info, by name and by position."""
+
+    metadata = {"render_modes": []}
+    render_mode = None
+
+    def __init__(self, world="gridworld", pairs=None, window=1, program="synpo-gen-expert"):
+        self.server = Server(world, pairs, window, program)
+        self._seed, self._next, self._info, self._goes_on = None, 0, {}, False
+        if gymnasium:
+            pictures = self.server.observation_type is np.uint8
+            self.observation_space = gymnasium.spaces.Box(
+                0 if pictures else -np.inf, 255 if pictures else np.inf, self.server.observation_shape,
+                self.server.observation_type)
+            self.action_space = gymnasium.spaces.Discrete(len(self.server.actions))
+
+    def reset(self, *, seed=None, options=None):
+        """Starts an episode. With a seed, that seed's first; without, the next one of the same seed.
+
+        Options: `env` and `task`, by name or position, in place of a pair drawn at random; `episode`, its number in
+        the seed; `starts`, one of expert (the starts of synpo-gen-expert, the default), evaluation (of synpo-eval) and
+        training (of its --starts training). A record of these programs has all of these numbers and names."""
+        options = dict(options or {})
+        if gymnasium:
+            super().reset(seed=seed)
+        if seed is not None or self._seed is None:
+            self._seed, self._next = _seed(seed), 0
+        episode = int(options.pop("episode", self._next))
+        self._next = episode + 1
+        env, task = _drawn_pair(self.server, self._seed, episode)
+        env = _position(options.pop("env", env), self.server.envs)
+        task = _position(options.pop("task", task), self.server.tasks)
+        starts = options.pop("starts", "expert")
+        if options:
+            raise ValueError(f"found the options {sorted(options)}, expected env, task, episode and starts")
+        if starts not in _STARTS:
+            raise ValueError(f"found the starts '{starts}', expected one of {', '.join(_STARTS)}")
+        observation = self.server.reset(0, env, task, self._seed, episode, starts)
+        self._goes_on = True
+        self._info = {"env": self.server.envs[env], "task": self.server.tasks[task], "env_position": env,
+                      "task_position": task, "seed": self._seed, "episode": episode}
+        return observation, dict(self._info)
+
+    def step(self, action):
+        if not self._goes_on:
+            raise RuntimeError("no episode goes on: reset() starts one")
+        observations, rewards, success, terminated, truncated = self.server.step([0], [int(action)])
+        self._goes_on = not (terminated[0] or truncated[0])
+        info = dict(self._info, success=bool(success[0]))
+        return observations[0], float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+
+    def expert(self):
+        """What the shortest-path planner would do."""
+        return int(self.server.expert([0])[0])
+
+    def close(self):
+        self.server.close()
+
+
+def _seed(seed):
+    return int(np.random.SeedSequence().generate_state(1, np.uint64)[0]) if seed is None else int(seed)
+
+
+def _drawn_pair(server, seed, episode):
+    return server.pairs[int(np.random.default_rng([seed, episode]).integers(len(server.pairs)))]
+
+
+def _position(which, names):
+    if isinstance(which, str):
+        if which not in names:
+            raise ValueError(f"found '{which}', expected one of {', '.join(names)}")
+        return names.index(which)
+    if not 0 <= int(which) < len(names):
+        raise ValueError(f"found the position {which}, expected 0 to {len(names) - 1}")
+    return int(which)

@@ -1,0 +1,286 @@
+"""What python/synpo.py reads and plays must be what the programs wrote and did. test_synpo.py FOLDER: with the files
+that python.bats makes there."""
+import io
+import json
+import os
+import struct
+import subprocess
+import sys
+import unittest
+
+import numpy as np
+
+sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../python"))
+import synpo  # noqa: E402
+
+FOLDER = sys.argv.pop(1) if len(sys.argv) > 1 else "."
+MAZES, KITCHENS = ("synpo", "mtl", "mlp", "modulenet", "sf", "blind", "mixed"), ("kitchen-synpo", "kitchen-mlp")
+
+
+def here(name):
+    return os.path.join(FOLDER, name)
+
+
+def written(name, text):
+    with open(here(name), "wb") as file:
+        file.write(text if isinstance(text, bytes) else text.encode())
+    return here(name)
+
+
+class Files(unittest.TestCase):
+    def refused(self, words, function, *arguments):
+        with self.assertRaises(ValueError) as caught:
+            function(*arguments)
+        self.assertIn(words, str(caught.exception))
+
+    def test_a_matrix_has_the_columns_of_the_file(self):
+        matrix = synpo.read_matrix(here("synpo.tsv"))
+        self.assertEqual(list(matrix["env"]), ["map1", "map2"])
+        self.assertEqual(list(matrix["task"]), ["R-B", "B-G"])
+        self.assertEqual(list(matrix["episodes"]), [2, 2])
+        self.assertEqual(matrix["temperature"][0], 0.5)
+        self.assertEqual(matrix["successes"].dtype, np.int64)
+        rates, tasks, envs = synpo.rates(matrix)
+        self.assertEqual((tasks, envs), (["R-B", "B-G"], ["map1", "map2"]))
+        self.assertTrue(np.isnan(rates[0, 1]) and np.isnan(rates[1, 0]))
+        self.assertEqual(rates[1, 1], matrix["successes"][1] / 2)
+
+    def test_rows_of_a_pair_are_added_up(self):
+        path = written("two.tsv", "env\ttask\tepisodes\tsuccesses\treward\na\tR-B\t3\t1\t\na\tR-B\t1\t1\t2.5\n")
+        matrix = synpo.read_matrix(path)
+        self.assertEqual(synpo.rates(matrix)[0].tolist(), [[0.5]])
+        self.assertTrue(np.isnan(matrix["reward"][0]) and matrix["reward"][1] == 2.5)
+
+    def test_a_log_is_read_with_NA_and_repeated_updates(self):
+        log = synpo.read_log(here("run.log"))
+        self.assertEqual(log["update"].tolist(), [1, 2])
+        self.assertTrue(np.isnan(log["seen_success"][0]) and log["loss"][0] > 0)
+        twice = written("twice.log", "update\tloss\n1\t3\n2\tNA\n1\t4\n2\t5\n3")
+        self.assertEqual({name: list(column) for name, column in synpo.read_log(twice).items()},
+                         {"update": [1, 2], "loss": [4, 5]})
+
+    def test_trajectories_are_those_of_the_record(self):
+        with open(here("synpo.jsonl")) as file:
+            lines = [json.loads(line) for line in file]
+        episodes = list(synpo.read_trajectories(here("synpo.jsonl")))
+        self.assertEqual(len(episodes), 4)
+        for line, episode in zip(lines, episodes):
+            self.assertEqual(episode["actions"].tolist(), line["actions"])
+            self.assertEqual(episode["labels"].tolist(), line.get("labels", line["actions"]))
+            self.assertEqual(episode["probabilities"].tolist(), line["probabilities"])
+            self.assertEqual(episode["scores"].dtype, np.float32)
+            weights = np.exp(episode["scores"].astype(float) / episode["temperature"])
+            np.testing.assert_allclose(episode["probabilities"], weights / weights.sum(1, keepdims=True), rtol=1e-12)
+
+    def test_a_stream_that_says_its_end_has_all_or_is_refused(self):
+        with open(here("synpo.jsonl")) as file:
+            lines = file.readlines()
+        end = '{"format":"synpo-end","version":1,"trajectories":2}\n'
+        self.assertEqual(len(list(synpo.read_trajectories(io.StringIO("".join(lines[:2]) + end)))), 2)
+        self.assertEqual(len(list(synpo.read_trajectories(io.StringIO("".join(lines[:2] + [end] + lines[2:4]) + end)))),
+                         4)
+        self.refused("found 1 trajectories, its end says 2", list,
+                     synpo.read_trajectories(io.StringIO(lines[0] + end)))
+
+    def test_a_checkpoint_has_metadata_and_tensors(self):
+        checkpoint = synpo.read_checkpoint(here("synpo.ckpt"))
+        described = json.loads(subprocess.check_output(["synpo-eval", "--describe", "-c", here("synpo.ckpt")]))
+        self.assertEqual(checkpoint.tasks, described["tasks"])
+        self.assertEqual(checkpoint.envs, [env["name"] for env in described["envs"]])
+        self.assertEqual(checkpoint.metadata["options"], described["options"])
+        self.assertEqual([list(pair) for pair in checkpoint.seen], described["seen"])
+        self.assertEqual({name: list(tensor.shape) for name, tensor in checkpoint.tensors.items()},
+                         described["tensors"])
+
+    def test_a_whole_checkpoint_and_half_precision_are_read(self):
+        metadata, tensors = synpo.read_safetensors(here("whole.ckpt"))
+        self.assertEqual(tensors["train/position"].dtype, np.int64)
+        self.assertEqual(tensors["train/position"][2], 2)
+        header = {"a": {"dtype": "BF16", "shape": [2], "data_offsets": [0, 4]},
+                  "b": {"dtype": "F16", "shape": [1, 2], "data_offsets": [4, 8]}}
+        text = json.dumps(header).encode()
+        path = written("half", struct.pack("<Q", len(text)) + text + struct.pack("<HH", 0x3FC0, 0xC000) +
+                       np.array([0.5, -2], "<f2").tobytes())
+        metadata, tensors = synpo.read_safetensors(path)
+        self.assertEqual((tensors["a"].tolist(), tensors["a"].dtype), ([1.5, -2.0], np.float32))
+        self.assertEqual(tensors["b"].tolist(), [[0.5, -2.0]])
+
+    def test_what_is_broken_is_refused_by_name(self):
+        self.refused("line 2: found 1 fields, expected 4", synpo.read_matrix,
+                     written("x", "env\ttask\tepisodes\tsuccesses\na\n"))
+        self.refused("no column 'task'", synpo.read_matrix, written("x", "env\tepisodes\tsuccesses\na\t1\t1\n"))
+        self.refused("the last line has no end", synpo.read_matrix,
+                     written("x", "env\ttask\tepisodes\tsuccesses\na\tb\t1\t1"))
+        self.refused("column 'episodes'", synpo.read_matrix,
+                     written("x", "env\ttask\tepisodes\tsuccesses\na\tb\tone\t1\n"))
+        self.refused("no header", synpo.read_log, written("x", ""))
+        for line, words in (("{", "line 2"), ("[]", "not a synpo trajectory"),
+                            ('{"format":"synpo-trajectory","version":2}', "version 2"),
+                            ('{"format":"synpo-trajectory","version":1}', "no field 'actions'"),
+                            ('{"format":"synpo-trajectory","version":1,"actions":[1,2],"rewards":[1]}', "differ")):
+            with open(here("synpo.jsonl")) as file:
+                first = file.readline()
+            self.refused(words, list, synpo.read_trajectories(io.StringIO(first + line + "\n")))
+        with open(here("synpo.ckpt"), "rb") as file:
+            good = file.read()
+        for size in (0, 5, 100, len(good) // 2, len(good) - 1):
+            self.refused("x:", synpo.read_checkpoint, written("x", good[:size]))
+        self.refused("bytes follow", synpo.read_checkpoint, written("x", good + b"x"))
+        self.refused("header length", synpo.read_checkpoint, written("x", struct.pack("<Q", 2**40) + good[8:]))
+        self.refused("not a synpo checkpoint", synpo.read_checkpoint, here("half"))
+        for change in ({"data_offsets": [4, 8]}, {"dtype": "F8"}, {"shape": None}, {"data_offsets": 3}):
+            text = json.dumps({"a": {"dtype": "F32", "shape": [1], "data_offsets": [0, 4], **change}}).encode()
+            self.refused("x: ", synpo.read_safetensors, written("x", struct.pack("<Q", len(text)) + text + bytes(4)))
+
+
+class Worlds(unittest.TestCase):
+    def test_the_experts_episodes_are_played_again_from_the_same_starts(self):
+        for world, name in (("gridworld", "e.jsonl"), ("kitchen", "k.jsonl")):
+            env = synpo.Env(world)
+            self.addCleanup(env.close)
+            for episode in list(synpo.read_trajectories(here(name)))[:5]:
+                observation, info = env.reset(seed=episode["seed"], options={
+                    "env": episode["env"], "task": episode["task"], "episode": episode["episode"]})
+                self.assertEqual(info["env"], episode["env"])
+                for i, action in enumerate(episode["actions"]):
+                    self.assertEqual(env.expert(), action)
+                    observation, reward, terminated, truncated, info = env.step(action)
+                    self.assertEqual(reward, episode["rewards"][i])
+                    self.assertEqual(terminated, i + 1 == len(episode["actions"]))
+                self.assertTrue(info["success"] and not truncated)
+                with self.assertRaises(RuntimeError):
+                    env.step(0)
+
+    def test_a_seed_is_a_sequence_of_episodes(self):
+        env, other = synpo.Env(pairs=here("pairs.tsv")), synpo.Env(pairs=here("pairs.tsv"))
+        self.addCleanup(env.close)
+        self.addCleanup(other.close)
+        first = [env.reset(seed=7)] + [env.reset() for _ in range(9)]
+        again = [other.reset(seed=7)] + [other.reset() for _ in range(9)]
+        for (a, info), (b, other_info) in zip(first, again):
+            self.assertEqual(info, other_info)
+            np.testing.assert_array_equal(a, b)
+        self.assertEqual([info["episode"] for _, info in first], list(range(10)))
+        self.assertGreater(len({(info["env"], info["task"]) for _, info in first}), 1)
+        self.assertNotEqual(first[0][1], env.reset(seed=8)[1])
+        seen = {tuple(line.split("\t")[:2]) for line in open(here("pairs.tsv")) if line.endswith("\t1\n")}
+        self.assertLessEqual({(info["env"], info["task"]) for _, info in first}, seen)
+
+    def test_observations_are_colours(self):
+        env = synpo.Env(window=1)
+        self.addCleanup(env.close)
+        observation, info = env.reset(seed=1, options={"env": "map3", "task": "R-B"})
+        self.assertEqual((observation.shape, observation.dtype), ((16, 16, 12), np.uint8))
+        self.assertEqual(observation[..., :9].max(), 0)  # nothing was seen before the first step
+        colours = {tuple(colour) for colour in observation[..., 9:].reshape(-1, 3).tolist()}
+        self.assertLessEqual({(0, 0, 0), (255, 255, 255), (0, 255, 0), (170, 0, 255)}, colours)
+        moved = env.step(0)[0]
+        np.testing.assert_array_equal(moved[..., 6:9], observation[..., 9:])
+
+    def test_places_side_by_side_play_what_one_alone_plays(self):
+        batch, env = synpo.BatchEnv(3, pairs=here("pairs.tsv")), synpo.Env(pairs=here("pairs.tsv"))
+        self.addCleanup(batch.close)
+        self.addCleanup(env.close)
+        observations, info = batch.reset(seed=5)
+        alone = [env.reset(seed=5)] + [env.reset(), env.reset()]
+        np.testing.assert_array_equal(observations, [observation for observation, _ in alone])
+        self.assertEqual(list(info["task"]), [info["task_position"] for _, info in alone])
+        started, next_one = 3, env.reset()[0]
+        for _ in range(60):
+            observations, rewards, terminated, truncated, info = batch.step(batch.expert())
+            self.assertEqual(sorted(info["final"]), np.flatnonzero(terminated).tolist())
+            for place in sorted(info["final"]):
+                self.assertTrue(info["success"][place])
+                self.assertEqual(rewards[place], 10.99)
+                np.testing.assert_array_equal(observations[place], next_one)
+                started, next_one = started + 1, env.reset()[0]
+        self.assertGreater(started, 5)
+
+    def test_mistakes_are_named(self):
+        env = synpo.Env()
+        self.addCleanup(env.close)
+        for options, words in (({"env": "map99"}, "map99"), ({"task": 20}, "20"), ({"start": 1}, "start"),
+                               ({"starts": "x"}, "'x'")):
+            with self.assertRaisesRegex(ValueError, words):
+                env.reset(options=options)
+        env.reset(seed=1)
+        with self.assertRaises(ValueError):
+            env.step(5)
+        with self.assertRaisesRegex(RuntimeError, "synpo-gen-expert: .*no-such"):
+            synpo.Env("gridworld:no-such")
+        with self.assertRaisesRegex(RuntimeError, "no episode goes on in the place 1"):
+            env.server.step([1], [0])
+
+    def test_gymnasium_is_followed_where_it_is_there(self):
+        env = synpo.Env()
+        self.addCleanup(env.close)
+        self.assertEqual(hasattr(env, "action_space"), synpo.gymnasium is not None)
+        if synpo.gymnasium is None:
+            self.skipTest("no gymnasium here")
+        from gymnasium.utils.env_checker import check_env
+        check_env(env, skip_render_check=True)
+
+
+@unittest.skipIf(synpo.torch is None, "no torch here")
+class Policies(unittest.TestCase):
+    """Scores are compared with those that synpo-eval --scores recorded, in float64 here and in float32 there."""
+
+    def compare(self, name, world, **options):
+        env, policy = synpo.Env(world, **options), synpo.load_policy(here(name + ".ckpt")).double()
+        self.addCleanup(env.close)
+        for episode in synpo.read_trajectories(here(name + ".jsonl")):
+            observation, info = env.reset(seed=episode["seed"], options={
+                "env": episode["env"], "task": episode["task"], "episode": episode["episode"],
+                "starts": "evaluation"})
+            observations = []
+            for action, reward in zip(episode["actions"], episode["rewards"]):
+                observations.append(observation)
+                observation, found, terminated, truncated, info = env.step(action)
+                self.assertEqual(found, reward)
+            self.assertEqual((terminated, truncated, info["success"]),
+                             (episode["terminated"], episode["truncated"], episode["success"]))
+            scores = policy.scores(np.stack(observations), episode["env"], episode["task"])
+            np.testing.assert_allclose(scores, episode["scores"], rtol=1e-5,
+                                       atol=1e-5 * np.abs(episode["scores"]).max(), err_msg=name)
+
+    def test_scores_of_every_method_are_ours_in_the_mazes(self):
+        for name in MAZES:
+            self.compare(name, "gridworld", window=0 if name == "blind" else 1)
+
+    def test_scores_are_ours_in_the_kitchens(self):
+        for name in KITCHENS:
+            self.compare(name, "kitchen")
+
+    def test_the_greedy_policy_does_what_ours_does(self):
+        policy, env = synpo.load_policy(here("synpo.ckpt")), synpo.Env()
+        self.addCleanup(env.close)
+        for episode in synpo.read_trajectories(here("greedy.jsonl")):
+            observation, info = env.reset(seed=episode["seed"], options={
+                "env": episode["env"], "task": episode["task"], "episode": episode["episode"],
+                "starts": "evaluation"})
+            for action in episode["actions"][:40]:
+                self.assertEqual(policy.act(observation, info["env"], info["task"]), action)
+                observation, *_, info = env.step(action)
+
+    def test_parameters_can_be_learned(self):
+        policy = synpo.load_policy(here("synpo.ckpt"))
+        scores = policy(synpo.torch.zeros(2, 16, 16, 12), synpo.torch.tensor([0, 1]), synpo.torch.tensor([1, 0]))
+        scores.sum().backward()
+        self.assertGreater(float(policy.embedding["env"].grad.abs().sum()), 0)
+        self.assertGreater(float(policy.encoder.stage1["block1"].conv1.weight.grad.abs().sum() +
+                                 policy.theta.grad.abs().sum()), 0)
+
+    def test_a_checkpoint_of_other_shapes_is_refused(self):
+        checkpoint = synpo.read_checkpoint(here("synpo.ckpt"))
+        checkpoint.tensors["theta"] = checkpoint.tensors["theta"][1:]
+        with self.assertRaisesRegex(ValueError, "'theta'"):
+            synpo.load_policy(checkpoint)
+        del checkpoint.tensors["theta"]
+        with self.assertRaisesRegex(ValueError, "no tensor 'theta'"):
+            synpo.load_policy(checkpoint)
+        with self.assertRaisesRegex(ValueError, "does not know 'map99'"):
+            synpo.load_policy(here("synpo.ckpt")).scores(np.zeros((16, 16, 12)), "map99", "R-B")
+
+
+if __name__ == "__main__":
+    unittest.main()
