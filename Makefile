@@ -38,6 +38,20 @@ MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
 PACKAGES := g++ make libeigen3-dev libopencv-dev libcairo2-dev libharfbuzz-dev libgif-dev nlohmann-json3-dev \
             fonts-dejavu-core libgtest-dev bats jq man-db python3-numpy poppler-utils
 
+DEB_PACKAGES := debhelper lintian dpkg-dev fakeroot pkg-config
+
+# What make install puts under PREFIX and make uninstall takes away: SOURCE:PLACE. The plug-in is only there where it
+# was built.
+LIBDIR    ?= lib
+PYTHONDIR ?= share/synpo/python
+HEADERS   := $(shell find lib -name '*.h' -not -path 'lib/torch/*')
+INSTALLED  = $(foreach tool,$(TOOLS),$(B)/$(tool):bin/$(tool)) \
+             $(B)/libsynpo.a:$(LIBDIR)/libsynpo.a $(B)/synpo.pc:$(LIBDIR)/pkgconfig/synpo.pc \
+             $(foreach header,$(HEADERS),$(header):$(header:lib/%=include/synpo/%)) \
+             $(B)/libsynpo_torch.so:lib/synpo/libsynpo_torch.so \
+             python/synpo.py:$(PYTHONDIR)/synpo.py \
+             $(foreach page,$(wildcard man/*),$(page):share/man/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
+
 # LibTorch on Debian takes any BLAS; with the reference one it crawls.
 TORCH_PACKAGES := libtorch-dev libopenblas0-openmp
 
@@ -85,8 +99,8 @@ ifneq ($(filter deps-torch,$(MAKECMDGOALS)),)
 $(TORCH_OBJ): | deps-torch
 endif
 
-.PHONY: all lib torch check test lint bench demo gallery deps deps-torch install uninstall clean check-torch gpu-kit \
-    dist help
+.PHONY: all lib torch check test lint bench demo gallery deps deps-torch deps-deb deb install uninstall clean check-torch \
+    gpu-kit dist help
 all: $(B)/told
 # So that make -q all says whether anything is to be built.
 $(B)/told: $(TOOLS:%=$(B)/%)
@@ -222,17 +236,30 @@ gpu-kit:
 deps-torch:
 	@scripts/deps $(TORCH_PACKAGES)
 
-install: all | $(filter torch,$(MAKECMDGOALS))
-	install -d $(DESTDIR)$(PREFIX)/bin $(foreach section,1 5 7,$(DESTDIR)$(PREFIX)/share/man/man$(section))
-	install -m 755 $(TOOLS:%=$(B)/%) $(DESTDIR)$(PREFIX)/bin
-	[ ! -e $(B)/libsynpo_torch.so ] || install -D -m 644 -t $(DESTDIR)$(PREFIX)/lib/synpo $(B)/libsynpo_torch.so
-	for section in 1 5 7; do install -m 644 man/*.$$section $(DESTDIR)$(PREFIX)/share/man/man$$section; done
+# For pkg-config. The library is static: what draws needs pkg-config --static.
+$(B)/synpo.pc: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'includedir=$${prefix}/include/synpo' 'libdir=$${prefix}/$(LIBDIR)' '' \
+	    'Name: synpo' 'Description: policies that transfer across environments and tasks' 'Version: $(VERSION)' \
+	    'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lsynpo -pthread' 'Libs.private: $(DRAW_LIBS)' > $@
 
-# What install put there, and the folder that it made for the plug-in.
+install: all $(B)/libsynpo.a $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
+	$(Q)set -e; for file in $(INSTALLED); do \
+	    from=$${file%%:*} to=$${file#*:} mode=644; \
+	    case $$to in bin/*) mode=755 ;; lib/synpo/*) [ -e "$$from" ] || continue ;; esac; \
+	    install -D -m $$mode "$$from" "$(DESTDIR)$(PREFIX)/$$to"; done
+
+# Folders go too where nothing else is in them.
 uninstall:
-	rm -f $(addprefix $(DESTDIR)$(PREFIX)/,$(TOOLS:%=bin/%) lib/synpo/libsynpo_torch.so \
-	    $(foreach page,$(notdir $(wildcard man/*)),share/man/man$(subst .,,$(suffix $(page)))/$(page)))
-	[ ! -d $(DESTDIR)$(PREFIX)/lib/synpo ] || rmdir --ignore-fail-on-non-empty $(DESTDIR)$(PREFIX)/lib/synpo
+	$(Q)for file in $(INSTALLED); do rm -f "$(DESTDIR)$(PREFIX)/$${file#*:}"; done
+	$(Q)for folder in include/synpo lib/synpo share/synpo; do folder="$(DESTDIR)$(PREFIX)/$$folder"; \
+	    [ ! -d "$$folder" ] || find "$$folder" -depth -type d -empty -delete; done
+
+# scripts/check-deb looks at them, installs them and takes them away again.
+deb: all $(B)/libsynpo.a
+	@scripts/deb $(B) $(VERSION)
+deps-deb:
+	@scripts/deps $(DEB_PACKAGES)
 
 # The sources of the commit, to the same bytes whoever makes it.
 dist:
@@ -249,7 +276,7 @@ help:
 	    demo 'a small training and its pictures, in $(B)/demo' \
 	    'check, test' 'all tests' \
 	    lint 'look at the sources without running them' \
-	    install 'programs and pages, under PREFIX=/usr/local' \
+	    install 'programs, pages, library and synpo.py, under PREFIX=/usr/local' \
 	    uninstall 'take them away again' \
 	    lib 'the library alone, $(B)/libsynpo.a' \
 	    deps-torch 'install what torch needs' \
@@ -259,6 +286,8 @@ help:
 	    gallery 'draw lab/gallery again' \
 	    gpu-kit 'pack what scripts/check-gpu compiles with' \
 	    dist 'a tarball of the sources' \
+	    deps-deb 'install what deb needs' \
+	    deb 'Debian packages, in $(B)/deb' \
 	    fuzz 'feed every reader what it does not expect (tests/fuzz)' \
 	    clean 'remove $(B)/'
 	@echo; echo 'V=1 shows the commands; CXXFLAGS, DESTDIR, PREFIX and B=DIR for $(B)/ are kept. README.md has the rest.'

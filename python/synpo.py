@@ -18,7 +18,7 @@
             break
 
 The formats are described in synpo-matrix(5), synpo-log(5), synpo-trajectory(5), synpo-checkpoint(5) and
-synpo-serve(5). A file that is not as they say is refused with ValueError, which names it and the place.
+synpo-play(5). A file that is not as they say is refused with ValueError, which names it and the place.
 """
 import json
 import os
@@ -37,7 +37,7 @@ except ImportError:
     gymnasium = None
 
 __all__ = ["read_matrix", "rates", "read_log", "read_trajectories", "Checkpoint", "read_checkpoint", "read_safetensors",
-           "load_policy", "Server", "Env", "BatchEnv"]
+           "load_policy", "export_onnx", "Server", "Env", "BatchEnv"]
 
 
 # --- tables ------------------------------------------------------------------------------------------------
@@ -185,6 +185,8 @@ def read_safetensors(path):
                 raise ValueError(f"{path}: tensor '{name}': type {entry['dtype']}")
             if begin != at or end > len(data):
                 raise ValueError(f"{path}: tensor '{name}': found bytes {begin} to {end}, expected {at} to {len(data)}")
+            if not isinstance(entry["shape"], list):
+                raise TypeError(entry["shape"])
             array = np.frombuffer(data[begin:end], _TYPES[entry["dtype"]]).reshape(entry["shape"])
             if entry["dtype"] == "BF16":
                 array = (array.astype("<u4") << 16).view("<f4")
@@ -288,6 +290,7 @@ if torch is not None:
 
         def __init__(self, shape):
             super().__init__()
+            self.view = shape["view"]
             self.conv1 = nn.Conv1d(shape["view"], shape["view_channels"], 3, 2, 1)
             self.conv2 = nn.Conv1d(shape["view_channels"], shape["view_channels"], 3, 2, 1)
             self.object = nn.Parameter(torch.zeros(shape["objects"], shape["object_embedding"]))
@@ -295,7 +298,7 @@ if torch is not None:
 
         def forward(self, x):
             x = x.to(self.object.dtype)
-            views = x[:, :-HAND].reshape(len(x), HISTORY, -1).transpose(1, 2)
+            views = x[:, :HISTORY * self.view].reshape(-1, HISTORY, self.view).transpose(1, 2)
             y = F.relu(self.conv2(F.relu(self.conv1(views)))).flatten(1)
             return self.fc(torch.cat([y, self.object[x[:, -HAND].long()]], 1))
 
@@ -374,11 +377,20 @@ if torch is not None:
                 state[name] = tensor.contiguous()
             self.load_state_dict(state, strict=False)
 
+        def of_pair(self, env, task):
+            """The policy of one pair, by names or positions, as a module that takes observations alone: for
+            export_onnx()."""
+            return _OfPair(self, self._positions(env, self.envs, 1), self._positions(task, self.tasks, 1))
+
         def _embedded(self, name, index):
             rows = self.embedding[name][index]
             if not self.shape["normalise_embeddings"]:
                 return rows
             return rows * torch.sqrt(rows.shape[1] / (rows.square().sum(1, keepdim=True) + 1e-12))
+
+        def matrices(self):
+            """theta of every action, [actions, d, K], of the methods synpo and mtl."""
+            return torch.einsum("ac,cik->aik", self.phi, self.theta) if hasattr(self, "phi") else self.theta
 
         def forward(self, observations, env, task):
             psi = self.encoder(observations)
@@ -394,8 +406,7 @@ if torch is not None:
             if self.method == "sf":
                 features = self.psi(torch.cat([psi, z], 1)).view(len(psi), self.shape["actions"], -1)
                 return (features * self._embedded("task", task)[:, None]).sum(2)
-            theta = torch.einsum("ac,cik->aik", self.phi, self.theta) if hasattr(self, "phi") else self.theta
-            return torch.einsum("ni,aik,nk->na", psi, theta, self.alpha(z)) + self.policy["bias"]
+            return torch.einsum("ni,aik,nk->na", psi, self.matrices(), self.alpha(z)) + self.policy["bias"]
 
         @torch.no_grad()
         def scores(self, observations, env, task):
@@ -424,6 +435,45 @@ if torch is not None:
                     raise ValueError(f"the policy does not know '{name}'")
             return torch.tensor([names.index(name) if isinstance(name, str) else int(name) for name in which])
 
+    class _OfPair(nn.Module):
+        """What a pair fixes is worked into the weights: psi goes through layers that are dense."""
+
+        @torch.no_grad()
+        def __init__(self, policy, env, task):
+            super().__init__()
+            self.encoder, self.unit, feature = policy.encoder, policy.method == "mlp", policy.shape["feature"]
+            self.register_buffer("ones", torch.ones(feature, feature))
+            index, method = {"env": env, "task": task}, policy.method
+            if method != "modulenet":
+                z = torch.cat([policy._embedded(name, index[name]) for name in ("env", "task")
+                               if name in policy.embedding], 1)
+            if method in ("synpo", "mtl"):
+                matrix = (policy.matrices() * policy.alpha(z)[0]).sum(2)
+                self.layers = nn.Sequential(_dense(matrix, policy.policy["bias"]))
+            elif method == "modulenet":
+                first, second = policy.module[f"task{int(task)}"], policy.module[f"env{int(env)}"]
+                self.layers = nn.Sequential(first.hidden, nn.ReLU(), first.out, second.hidden, nn.ReLU(), second.out)
+            else:
+                head = policy.policy if method == "mlp" else policy.psi
+                weight, out = head.hidden.weight, head.out
+                hidden = _dense(weight[:, :feature], head.hidden.bias + weight[:, feature:] @ z[0])
+                if method == "sf":  # the task's row is the last factor of every value
+                    row = policy._embedded("task", task)[0]
+                    out = _dense(torch.einsum("ach,c->ah", out.weight.view(policy.shape["actions"], len(row), -1), row),
+                                 out.bias.view(-1, len(row)) @ row)
+                self.layers = nn.Sequential(hidden, nn.ReLU(), out)
+
+        def forward(self, observations):
+            psi = self.encoder(observations)
+            if self.unit:
+                psi = psi / torch.sqrt((psi * psi) @ self.ones + 1e-12)  # without broadcasting, which OpenCV lacks
+            return self.layers(psi)
+
+    def _dense(weight, bias):
+        layer = nn.Linear(weight.shape[1], weight.shape[0])
+        layer.weight, layer.bias = nn.Parameter(weight.contiguous()), nn.Parameter(bias.contiguous())
+        return layer
+
     _NORM_NAMES = {"weight": "scale", "bias": "shift", "running_mean": "mean", "running_var": "variance"}
 
     def _file_name(name):
@@ -438,6 +488,17 @@ def load_policy(checkpoint):
     return Policy(checkpoint if isinstance(checkpoint, Checkpoint) else read_checkpoint(checkpoint))
 
 
+def export_onnx(checkpoint, env, task, path):
+    """Writes the policy of a checkpoint of the mazes, for one pair, as an ONNX network: from "observations", float32
+    [N, 16, 16, 12] as Env gives them, to synpo's "scores" [N, actions]. OpenCV's dnn module runs it."""
+    policy = load_policy(checkpoint)
+    if "view" in policy.shape:
+        raise ValueError("a policy of the kitchens, expected one of the mazes")
+    torch.onnx.export(policy.of_pair(env, task), torch.zeros(1, 16, 16, 3 * HISTORY), path,
+                      input_names=["observations"], output_names=["scores"], opset_version=11,
+                      dynamic_axes={"observations": {0: "N"}, "scores": {0: "N"}})
+
+
 # --- the worlds --------------------------------------------------------------------------------------------
 
 _STARTS = ("expert", "evaluation", "training")
@@ -445,18 +506,18 @@ _SUCCESS, _TERMINATED, _TRUNCATED = 1, 2, 4
 
 
 class Server:
-    """synpo-gen-expert --serve, asked in the protocol of synpo-serve(5). Episodes go on in places, numbered from 0."""
+    """synpo-gen-expert --play, asked in the protocol of synpo-play(5). Episodes go on in places, numbered from 0."""
 
     def __init__(self, world="gridworld", pairs=None, window=1, program="synpo-gen-expert"):
-        command = [program, "--serve", "-w", world, "--window", str(window)] + (["-p", str(pairs)] if pairs else [])
+        command = [program, "--play", "-w", world, "--window", str(window)] + (["-p", str(pairs)] if pairs else [])
         self._process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         greeting = self._process.stdout.readline()
         if not greeting:
             self._fail()
         greeting = json.loads(greeting)
-        if greeting["format"] != "synpo-serve" or greeting["version"] != 1:
+        if greeting["format"] != "synpo-play" or greeting["version"] != 1:
             raise ValueError(f"{program}: found the protocol {greeting['format']} {greeting['version']}, "
-                             "expected synpo-serve 1")
+                             "expected synpo-play 1")
         self.world, self.window, self.step_limit = greeting["world"], greeting["window"], greeting["step_limit"]
         self.envs = [env["name"] for env in greeting["envs"]]
         self.env_hashes = {env["name"]: env["hash"] for env in greeting["envs"]}

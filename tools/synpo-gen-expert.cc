@@ -43,11 +43,11 @@ int gen_expert(int argc, char** argv) {
   std::string world_name = "gridworld", pairs_path, output_path = "-";
   ExpertStream stream;
   int64_t count = 0;
-  bool relabel_stream = false, serve = false, says_end = false, quiet = false;
+  bool relabel_stream = false, play = false, says_end = false, quiet = false;
   Options options(
       "synpo-gen-expert",
       "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [--end] [-w WORLD] [-o FILE] < "
-      "TRAJECTORIES\n       synpo-gen-expert --serve [-w WORLD] [-p PAIRS] [--window R] < REQUESTS > ANSWERS",
+      "TRAJECTORIES\n       synpo-gen-expert --play [-w WORLD] [-p PAIRS] [--window R] < REQUESTS > ANSWERS",
       "Writes trajectories of the shortest-path expert, a JSON object a line.");
   options
       .text('p', "pairs", "FILE", "pairs to draw from: TSV env, task, seen; rows with seen = 1 (all pairs)", pairs_path)
@@ -59,7 +59,7 @@ int gen_expert(int argc, char** argv) {
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's",
             stream.noise, 0, 1)
       .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
-      .flag(0, "serve", "play what another program asks for: requests on stdin, observations on stdout", serve)
+      .flag(0, "play", "play what another program asks for: requests on stdin, observations on stdout", play)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
       .flag(0, "end", "a last line says how many trajectories there are (--relabel: if it did so there)", says_end)
       .text('w', "world", "WORLD", alternatives(world_names()), world_name)
@@ -69,9 +69,9 @@ int gen_expert(int argc, char** argv) {
   if (relabel_stream)
     for (const char* other : {"pairs", "count", "per-pair", "noise", "seed", "window"})
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
-  if (serve)
+  if (play)
     for (const char* other : {"count", "per-pair", "noise", "seed", "relabel", "end", "output"})
-      if (options.given(other)) fail(Exit::kUsage, "--serve does not go with --", other);
+      if (options.given(other)) fail(Exit::kUsage, "--play does not go with --", other);
   if (stream.per_pair > 0 && options.given("count")) fail(Exit::kUsage, "-n and --per-pair exclude each other");
   if (says_end && !relabel_stream && stream.per_pair == 0 && count == 0)
     fail(Exit::kUsage, "--end goes with -n or --per-pair: a stream without an end never says it");
@@ -87,7 +87,7 @@ int gen_expert(int argc, char** argv) {
   }
   stream.pairs =
       pairs_path.empty() ? resolve_pairs(world, all_pairs(world), false, "") : read_seen_pairs(world, pairs_path);
-  if (serve) {
+  if (play) {
     Input input("-");
     EpisodeServer(world, stream.pairs, stream.window).serve(input, output);
     output.finish();

@@ -15,7 +15,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr char kFormat[] = "synpo-serve";
+constexpr char kFormat[] = "synpo-play";
 constexpr int kVersion = 1;
 constexpr uint32_t kMostPlaces = 65536;
 constexpr Purpose kStarts[] = {Purpose::kEpisodeStart, Purpose::kEvaluation, Purpose::kTrainingStart};

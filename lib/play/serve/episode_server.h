@@ -1,4 +1,4 @@
-// Episodes for another program, over two streams of bytes (synpo-serve(5)): it says where they start and what is done,
+// Episodes for another program, over two streams of bytes (synpo-play(5)): it says where they start and what is done,
 // and gets observations and rewards. The agent may be anyone's, in any language.
 #pragma once
 #include <cstdint>

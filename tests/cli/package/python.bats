@@ -13,6 +13,8 @@ setup_file() {
     record mixed
     synpo-gen-expert -p pairs.tsv -n 60 -s 1 --window 0 | synpo-train "${TINY[@]}" -n 2 -p pairs.tsv --strip >blind.ckpt
     record blind
+    synpo-finetune strip --half <synpo.ckpt >half.ckpt
+    record half
     printf 'env\ttask\nFloorPlan1\tMug-Sink\nFloorPlan2\tApple-Fridge\n' >kitchens.tsv
     for method in synpo mlp; do
         synpo-train "${TINY[@]}" -w kitchen -m $method -n 2 --strip <k.jsonl >"kitchen-$method.ckpt"
@@ -23,7 +25,8 @@ setup_file() {
 }
 
 python_test() {
-    /usr/bin/python3 -B "$ROOT/tests/cli/package/test_synpo.py" "$BATS_FILE_TMPDIR" -v "$@" 2>"$BATS_TEST_TMPDIR/said" ||
+    /usr/bin/python3 -B "$ROOT/tests/cli/package/test_synpo.py" "$BATS_FILE_TMPDIR" -v "$@" \
+        2>"$BATS_TEST_TMPDIR/said" ||
         complain "$(cat "$BATS_TEST_TMPDIR/said")"
     ! grep -q 'no torch here' "$BATS_TEST_TMPDIR/said" || skip "no torch here"
 }

@@ -12,7 +12,8 @@ setup() { set_up pairs.tsv two.tsv a.ckpt; }
     jq -c 'del(.temperature, .scores, .probabilities)' r.jsonl >less.jsonl
     jq -c . plain.jsonl | cmp - less.jsonl
     jq -e -s 'all(.[]; .temperature == 0.5 and (.actions | length) == (.scores | length) and
-        (.scores | length) == (.probabilities | length) and all(.scores[], .probabilities[]; length == 5))' r.jsonl >answer
+        (.scores | length) == (.probabilities | length) and all(.scores[], .probabilities[]; length == 5))' \
+        r.jsonl >answer
     # softmax(scores / temperature), but for the digits of a single-precision number.
     jq -e -s 'all(.[]; .temperature as $t | [.scores, .probabilities] | transpose[] |
         (.[0] | map(. / $t | exp)) as $e | ($e | add) as $sum | [($e | map(. / $sum)), .[1]] | transpose[] |

@@ -14,7 +14,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(__file__), "../../../python"))
 import synpo  # noqa: E402
 
 FOLDER = sys.argv.pop(1) if len(sys.argv) > 1 else "."
-MAZES, KITCHENS = ("synpo", "mtl", "mlp", "modulenet", "sf", "blind", "mixed"), ("kitchen-synpo", "kitchen-mlp")
+MAZES, KITCHENS = ("synpo", "mtl", "mlp", "modulenet", "sf", "blind", "mixed", "half"), ("kitchen-synpo", "kitchen-mlp")
 
 
 def here(name):
@@ -261,6 +261,29 @@ class Policies(unittest.TestCase):
             for action in episode["actions"][:40]:
                 self.assertEqual(policy.act(observation, info["env"], info["task"]), action)
                 observation, *_, info = env.step(action)
+
+    def test_a_policy_of_a_pair_is_an_onnx_network_that_opencv_runs_to_our_scores(self):
+        try:
+            import cv2
+        except ImportError:
+            self.skipTest("no cv2 here")
+        env = synpo.Env()
+        self.addCleanup(env.close)
+        for name in MAZES:
+            episode = next(synpo.read_trajectories(here(name + ".jsonl")))
+            synpo.export_onnx(here(name + ".ckpt"), episode["env"], episode["task"], here("policy.onnx"))
+            network = cv2.dnn.readNetFromONNX(here("policy.onnx"))
+            if name == "blind":
+                continue  # its observations are those of another window
+            observation, _ = env.reset(seed=episode["seed"], options={
+                "env": episode["env"], "task": episode["task"], "episode": episode["episode"],
+                "starts": "evaluation"})
+            for action, scores in list(zip(episode["actions"], episode["scores"]))[:10]:
+                network.setInput(observation[None].astype(np.float32))
+                np.testing.assert_allclose(network.forward()[0], scores, rtol=1e-5, atol=1e-5 * np.abs(scores).max())
+                observation = env.step(action)[0]
+        with self.assertRaisesRegex(ValueError, "kitchens"):
+            synpo.export_onnx(here("kitchen-synpo.ckpt"), "FloorPlan1", "Mug-Sink", here("policy.onnx"))
 
     def test_parameters_can_be_learned(self):
         policy = synpo.load_policy(here("synpo.ckpt"))

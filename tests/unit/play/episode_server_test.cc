@@ -55,7 +55,7 @@ TEST(EpisodeServer, GreetsWithWhatItPlays) {
   const std::string line = answers(builtin_world(), "", 2);
   ASSERT_EQ(line.find('\n'), line.size() - 1);
   const nlohmann::json greeting = nlohmann::json::parse(line);
-  EXPECT_EQ(greeting["format"], "synpo-serve");
+  EXPECT_EQ(greeting["format"], "synpo-play");
   EXPECT_EQ(greeting["window"], 2);
   EXPECT_EQ(greeting["step_limit"], 300);
   EXPECT_EQ(greeting["envs"].size(), 20u);
