@@ -274,12 +274,11 @@ if torch is not None:
                 self.input.register_buffer("variance", torch.ones(3 * HISTORY))
 
         def forward(self, x):
-            x = x.to(self.fc.weight.dtype)
+            x = x.to(self.fc.weight.dtype).permute(0, 3, 1, 2)
             if self.normalises:
-                x = (x - self.input.mean) / torch.sqrt(self.input.variance + 1e-5)
+                x = F.batch_norm(x, self.input.mean, self.input.variance, eps=1e-5)
             else:
                 x = x / 64
-            x = x.permute(0, 3, 1, 2)
             for s in range(1, 5):
                 for block in getattr(self, f"stage{s}").values():
                     x = block(x)
