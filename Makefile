@@ -40,8 +40,8 @@ PACKAGES := g++ make libeigen3-dev libopencv-dev libcairo2-dev libharfbuzz-dev l
 
 DEB_PACKAGES := debhelper lintian dpkg-dev fakeroot pkg-config
 
-# What make install puts under PREFIX and make uninstall takes away: SOURCE:PLACE. The plug-in is only there where it
-# was built.
+# What make install puts under PREFIX and make uninstall takes away: SOURCE:PLACE. Of the libraries those that were
+# built.
 LIBDIR    ?= lib
 PYTHONDIR ?= share/synpo/python
 HEADERS   := $(shell find lib -name '*.h' -not -path 'lib/torch/*')
@@ -49,7 +49,7 @@ INSTALLED  = $(foreach tool,$(TOOLS),$(B)/$(tool):bin/$(tool)) \
              $(B)/libsynpo.a:$(LIBDIR)/libsynpo.a $(B)/synpo.pc:$(LIBDIR)/pkgconfig/synpo.pc \
              $(foreach header,$(HEADERS),$(header):$(header:lib/%=include/synpo/%)) \
              $(B)/libsynpo_torch.so:lib/synpo/libsynpo_torch.so \
-             python/synpo.py:$(PYTHONDIR)/synpo.py \
+             $(foreach module,$(wildcard python/*.py),$(module):$(PYTHONDIR)/$(notdir $(module))) \
              $(foreach page,$(wildcard man/*),$(page):share/man/man$(subst .,,$(suffix $(page)))/$(notdir $(page)))
 
 # LibTorch on Debian takes any BLAS; with the reference one it crawls.
@@ -243,10 +243,10 @@ $(B)/synpo.pc: FORCE
 	    'Name: synpo' 'Description: policies that transfer across environments and tasks' 'Version: $(VERSION)' \
 	    'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lsynpo -pthread' 'Libs.private: $(DRAW_LIBS)' > $@
 
-install: all $(B)/libsynpo.a $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
+install: all $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
 	$(Q)set -e; for file in $(INSTALLED); do \
 	    from=$${file%%:*} to=$${file#*:} mode=644; \
-	    case $$to in bin/*) mode=755 ;; lib/synpo/*) [ -e "$$from" ] || continue ;; esac; \
+	    case $$to in bin/*) mode=755 ;; *.a | *.so) [ -e "$$from" ] || continue ;; esac; \
 	    install -D -m $$mode "$$from" "$(DESTDIR)$(PREFIX)/$$to"; done
 
 # Folders go too where nothing else is in them.
@@ -256,7 +256,7 @@ uninstall:
 	    [ ! -d "$$folder" ] || find "$$folder" -depth -type d -empty -delete; done
 
 # scripts/check-deb looks at them, installs them and takes them away again.
-deb: all $(B)/libsynpo.a
+deb: all
 	@scripts/deb $(B) $(VERSION)
 deps-deb:
 	@scripts/deps $(DEB_PACKAGES)
