@@ -114,10 +114,8 @@ std::vector<Adaptation::Span> Adaptation::learned() const {
   const auto add_group = [&](ParameterGroup group) {
     for (const TensorInfo* tensor : model_.policy->group(group)) spans.push_back({tensor->offset, tensor->size});
   };
-  if (options_.targets.heads) {
-    add_group(ParameterGroup::kHeads);
-    add_group(ParameterGroup::kRecognisers);
-  }
+  if (options_.targets.basis) add_group(ParameterGroup::kHeads);
+  if (options_.targets.recognisers) add_group(ParameterGroup::kRecognisers);
   if (options_.targets.coefficients) add_group(ParameterGroup::kCoefficients);
   return spans;
 }
@@ -160,7 +158,7 @@ void Adaptation::compute_features() {
 
 bool Adaptation::has_embedding_loss() const {
   const size_t step_bytes = model_.policy->embedding_loss_step_bytes();
-  return step_bytes > 0 && !options_.targets.heads && !options_.targets.coefficients &&
+  return step_bytes > 0 && !options_.targets.recognisers && !options_.targets.basis && !options_.targets.coefficients &&
          env_.size() <= options_.memory_bytes / step_bytes;
 }
 

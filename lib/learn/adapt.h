@@ -26,7 +26,8 @@ namespace synpo {
 
 // These are learned beside the new embeddings.
 struct AdaptTargets {
-  bool heads = false;         // theta, the biases of policy and reward, f_env and f_task
+  bool recognisers = false;   // f_env and f_task
+  bool basis = false;         // theta, and the biases of policy and reward
   bool coefficients = false;  // alpha and beta
 };
 

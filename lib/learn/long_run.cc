@@ -63,7 +63,6 @@ int LongRun::drive(const char* tool, LongWork& work) const {
       const int64_t update = work.updates();
       const bool last = work.finished();
       if (reports(update, last)) {
-        work.settle();
         const TimePoint moment = now();
         note = work.report({outputs.log(), progress, seconds_between(start, moment), seconds_between(reported, moment),
                             evaluates(update, last) ? evaluate_episodes : 0});
@@ -86,9 +85,6 @@ RunOutputs::RunOutputs(const LongRun& settings, const std::vector<std::string>& 
                                                               settings.strip ? Paths{} : Paths{settings.resume}),
       log_(settings.log, !settings.resume.empty(), columns) {
   check_save(save_, over_);
-  if (save_.empty()) return;
-  const Destination place = Destination::find(save_);
-  if (place.kind == Destination::Kind::kFile) claim_.emplace(place);
 }
 
 void RunOutputs::save(const Checkpoint& checkpoint) const {

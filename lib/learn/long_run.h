@@ -1,14 +1,12 @@
 // The tools that learn for hours have this in common: where they write, after which updates, and the loop itself.
 #pragma once
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/files/io.h"
-#include "base/files/unfinished.h"
 #include "engine/device.h"
 #include "format/checkpoint.h"
 #include "format/run_log.h"
@@ -52,8 +50,6 @@ class LongWork {
   virtual void begin() {}
   // Throws Stopped, and is as it was before, where a stop signal comes while it waits for data.
   virtual void update(Progress& progress) = 0;
-  // Waits for what the last update may have left to be computed beside the next one: before a time is taken.
-  virtual void settle() {}
   // Called after the last update, unless a signal stopped the run.
   virtual void end() {}
 
@@ -74,7 +70,7 @@ class LongWork {
   };
   // Writes a row of the log; returns what stands beside the bar until the next one.
   virtual std::string report(const Report& report) = 0;
-  virtual Checkpoint checkpoint(bool with_training_state) = 0;
+  virtual Checkpoint checkpoint(bool with_training_state) const = 0;
 };
 
 // A long run writes a checkpoint at its end, one to go on from now and then, and a log.
@@ -84,8 +80,7 @@ class LongWork {
 class RunOutputs {
  public:
   // The place of the checkpoint that the run goes on from may be taken by what holds as much. Throws kUsage where a
-  // checkpoint to go on from has no file to be replaced in, kCantCreate where another run saves to that file, and as
-  // Output and TsvLog do.
+  // checkpoint to go on from has no file to be replaced in, and as Output and TsvLog do.
   RunOutputs(const LongRun& settings, const std::vector<std::string>& columns);
 
   TsvLog& log() { return log_; }
@@ -96,7 +91,6 @@ class RunOutputs {
 
  private:
   std::string save_;
-  std::optional<Claim> claim_;     // on save_, where that is a file
   std::vector<std::string> over_;  // what save_ may be one file with
   Output output_;
   TsvLog log_;

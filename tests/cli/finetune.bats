@@ -50,6 +50,16 @@ setup() {
     fails 64 synpo-finetune adapt <demos.jsonl
     says "-c"
     fails 64 synpo-finetune adapt -c a.ckpt --train everything <demos.jsonl
+    for words in recognisers embeddings+ embeddings+theta embeddings+embeddings; do
+        fails 64 synpo-finetune adapt -c a.ckpt --train $words <demos.jsonl
+        says "found '$words', expected embeddings, and +recognisers, +basis or +coefficients after it"
+    done
+    # The older word for two of them.
+    for words in heads basis+recognisers recognisers; do
+        synpo-finetune adapt -q -n 3 -c a.ckpt --train embeddings+$words <demos.jsonl >$words.ckpt
+    done
+    cmp heads.ckpt basis+recognisers.ckpt
+    ! cmp -s heads.ckpt recognisers.ckpt || complain "+recognisers learns the basis"
     says "embeddings"
     fails 65 synpo-finetune adapt -q -c a.ckpt </dev/null
     says "no trajectory"

@@ -46,19 +46,23 @@ std::unique_ptr<World> wider_world(const World& world, const World* more, const 
   return restore_world(world.name(), environments, more);
 }
 
+// "embeddings+recognisers+basis". "heads" is the older name of these two together.
 AdaptTargets parse_targets(const std::string& list) {
   AdaptTargets targets;
-  std::string rest = list;
-  if (!rest.starts_with("embeddings"))
-    throw std::invalid_argument("expected embeddings, and +heads or +coefficients after it");
-  rest.erase(0, 10);
-  while (!rest.empty()) {
-    bool* target = rest.starts_with("+heads")          ? &targets.heads
-                   : rest.starts_with("+coefficients") ? &targets.coefficients
-                                                       : nullptr;
-    if (!target) throw std::invalid_argument("expected embeddings, and +heads or +coefficients after it");
-    *target = true;
-    rest.erase(0, target == &targets.heads ? 6 : 13);
+  const std::string text = list + "+";
+  size_t begin = 0, count = 0;
+  for (size_t end; (end = text.find('+', begin)) != std::string::npos; begin = end + 1, ++count) {
+    const std::string word = text.substr(begin, end - begin);
+    const bool both = word == "heads";
+    if (count == 0 && word == "embeddings") continue;
+    if (count > 0 && (both || word == "recognisers" || word == "basis")) {
+      targets.recognisers |= both || word == "recognisers";
+      targets.basis |= both || word == "basis";
+    } else if (count > 0 && word == "coefficients") {
+      targets.coefficients = true;
+    } else {
+      throw std::invalid_argument("expected embeddings, and +recognisers, +basis or +coefficients after it");
+    }
   }
   return targets;
 }
@@ -81,7 +85,7 @@ int adapt(int argc, char** argv) {
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
       .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", adaptation.trajectories, 1,
                100000)
-      .call(0, "train", "WHAT", "embeddings, and after it +heads, +coefficients, or both [embeddings]",
+      .call(0, "train", "WHAT", "embeddings, and after it any of +recognisers, +basis and +coefficients [embeddings]",
             [&](const std::string& list) { adaptation.targets = parse_targets(list); })
       .real(0, "lr", "X", "learning rate of Adam", adaptation.adam.learning_rate, 0, 1)
       .real(0, "weight-decay", "X", "L2 term added to the gradient", adaptation.adam.weight_decay, 0, 1)

@@ -127,7 +127,7 @@ TEST(Adapt, MoreIsLearnedWhereAskedFor) {
   const GridSet world = first_mazes(3);
   Parallel parallel(1);
   AdaptOptions options;
-  options.targets = {true, true};
+  options.targets = {true, true, true};
   const Model start = widen(trained_on(world, {{0, 0}, {1, 1}}), world, world, 1, 5);
   Adaptation adaptation(world, parallel, widen(start, world, world, 1, 5), options, 5);
   adaptation.add(demonstration(world, {2, 0}));
@@ -135,6 +135,29 @@ TEST(Adapt, MoreIsLearnedWhereAskedFor) {
   for (const char* name : {"theta", "policy.bias", "f_env.out.weight", "alpha.hidden.weight", "beta.out.weight"})
     EXPECT_NE(tensor(adaptation.model(), name), tensor(start, name)) << name;
   EXPECT_EQ(tensor(adaptation.model(), "encoder.fc.weight"), tensor(start, "encoder.fc.weight"));
+}
+
+// Each word unfreezes what it names, and nothing else.
+TEST(Adapt, LearnedIsWhatIsNamed) {
+  const GridSet world = first_mazes(3);
+  Parallel parallel(1);
+  const Model start = widen(trained_on(world, {{0, 0}, {1, 1}}), world, world, 1, 5);
+  const auto learned = [&](const AdaptTargets& targets) {
+    AdaptOptions options;
+    options.targets = targets;
+    Adaptation adaptation(world, parallel, widen(start, world, world, 1, 5), options, 5);
+    adaptation.add(demonstration(world, {2, 0}));
+    adaptation.update();
+    std::string names;
+    for (const char* name : {"embedding.env", "theta", "policy.bias", "f_env.out.weight", "f_task.hidden.weight",
+                             "alpha.hidden.weight", "encoder.fc.weight"})
+      if (tensor(adaptation.model(), name) != tensor(start, name)) names += std::string(" ") + name;
+    return names;
+  };
+  EXPECT_EQ(learned({}), " embedding.env");
+  EXPECT_EQ(learned({.recognisers = true}), " embedding.env f_env.out.weight f_task.hidden.weight");
+  EXPECT_EQ(learned({.basis = true}), " embedding.env theta policy.bias");
+  EXPECT_EQ(learned({.coefficients = true}), " embedding.env alpha.hidden.weight");
 }
 
 TEST(Adapt, AWiderWorldKeepsWhatItKnows) {

@@ -1,4 +1,4 @@
-#include "nn/clipped_objective.h"
+#include "learn/ppo/clipped_objective.h"
 
 #include <algorithm>
 #include <cmath>
