@@ -53,7 +53,10 @@ trained() { grep -o -- '^train.*' calls | sed 's/.*-o \([^ ]*\)\.part.*/\1/'; }
         no-disentanglement-2 no-reward-2 | cmp - got
     [ "$(grep -c 'train.* -n 1953 ' calls)" = 10 ]
     grep -q 'train .*-p pairs2.tsv -s 2 .*--no-env-loss --no-task-loss ' calls
-    [ "$(grep -c 'eval .* -n 7 ' calls)" = 10 ]
+    # Each twice: actions drawn, and always the best one.
+    [ "$(grep -c '^eval .* -n 7 --temperature 0$' calls)" = 10 ]
+    [ "$(grep -c '^eval .* -n 7$' calls)" = 10 ]
+    [ "$(cut -f 2 results/no-env-2.greedy.tsv)" = $'method\nno-env' ]
     # Splits 2 and 3 are reported; 1 is the one that the recipe was found on.
     grep -q '^matrix split .*-s 2' calls
     grep -q '^matrix split .*-s 3' calls
@@ -236,9 +239,42 @@ END
     local asked=(figure3 --budget 1e6 --seeds 1 -o results)
     scripts/reproduce "${asked[@]}" --device cuda --precision bf16
     [ "$(grep -c '^train .* --device cuda --precision bf16 ' calls)" = 5 ]
-    [ "$(grep -c '^eval .* --device cuda --precision bf16 ' calls)" = 5 ]
+    [ "$(grep -c '^eval .* --device cuda --precision bf16 ' calls)" = 10 ]
     ! scripts/reproduce "${asked[@]}" 2>err || complain "a folder of another device was gone on with"
     grep -q '^reproduce: found .* are of --budget 1e6 -n 100 --device cuda --precision bf16: ' err
+}
+
+@test "reproduce: recipe, temperature and world are those of every training and evaluation, and of the folder" {
+    stand_ins
+    local asked=(figure3 --budget 1e7 --seeds 1 -o results)
+    scripts/reproduce "${asked[@]}" --recipe paper --temperature 0.8 --world gridworld:mine
+    [ "$(grep -c '^train .*-w gridworld:mine .* -n 4257 --recipe paper ' calls)" = 5 ]
+    [ "$(grep -c '^eval .* --temperature 0$' calls)" = 5 ]
+    [ "$(grep -c '^eval .* --temperature 0.8$' calls)" = 5 ]
+    grep -q '^matrix split -w gridworld:mine ' calls
+    grep -q '^expert .*-w gridworld:mine ' calls
+    grep -q '^Recipe paper: 4257 updates of 2349 states' results/README.md
+    ! scripts/reproduce "${asked[@]}" 2>err || complain "a folder of another recipe was gone on with"
+}
+
+@test "reproduce --splits: every split with every seed" {
+    stand_ins
+    scripts/reproduce table5 --budget 1e6 --splits 2 --seeds 2 -o results
+    trained | grep synpo | sort >got
+    printf '%s\n' synpo-2.1 synpo-2.2 synpo-3.1 synpo-3.2 | cmp - got
+    grep -q '^train .*-p blind1.tsv -s 2 .*-o synpo-2.2.part' calls
+    grep -q '^train .*-p blind2.tsv -s 1 .*-o synpo-3.1.part' calls
+    [ "$(grep -c '^matrix split' calls)" = 2 ]
+}
+
+@test "reproduce --shard: an evaluation in pieces, of which none is made twice" {
+    stand_ins
+    scripts/reproduce small --budget 1e6 --seeds 1 -n 5 --shard 2 -o results
+    grep '^eval .*synpo-1.ckpt' calls | sed 's/.*-n //' >got
+    printf '%s\n' '2 --first-episode 0 --temperature 0' '2 --first-episode 2 --temperature 0' \
+        '1 --first-episode 4 --temperature 0' '2 --first-episode 0' '2 --first-episode 2' '1 --first-episode 4' | cmp - got
+    grep -q '^matrix merge synpo-1.from-0 synpo-1.from-2 synpo-1.from-4' calls
+    ! ls results | grep from || complain "pieces are left"
 }
 
 @test "reproduce: nonsense is wrong usage, and says what is right" {
@@ -246,7 +282,8 @@ END
     for words in "table9" "common" "table4 --seeds 0" "table4 -j x" "table4 -n" "table4 --colour blue" \
         "table4 --run 0" "table4 --run" "table4 --slurm --merge" "table4 --parallel 2 --run 1" "table4 --parallel x" \
         "table4 -- -p short" "table4 --run 1 -- -p short" "common-runs" \
-        "table4 --run 11 --budget 1e6" "table4 --budget 12" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
+        "table4 --run 11 --budget 1e6" "table4 --budget 12" "table4 --recipe big" "table4 --temperature 0" "table4 --temperature warm" "table4 --splits 0" "all" \
+        "table4 --limit 10" "table4 --limit 10m --run 1" "table4 --list --budget 10m" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
         status=0
         # shellcheck disable=SC2086
         scripts/reproduce $words 2>err || status=$?

@@ -1,0 +1,72 @@
+# scripts/reproduce --limit: cut short, killed and carried to another folder at any moment, and the results are those of
+# one call that nothing disturbed.
+load ../common
+
+setup() {
+    set_up
+    mkdir tree
+    cp -r "$ROOT/scripts" tree/
+    ln -s "$(dirname "$(command -v synpo-train)")" tree/build
+    # Small enough that the folder's files are cut up: a save has some 45 MB.
+    asked=(small --toy --budget 12800 --seeds 1 -n 3)
+}
+
+reproduce() { TMPDIR=$PWD tree/scripts/reproduce "$@"; }
+
+# kill_tree PID: it and all below it, at one moment.
+kill_tree() {
+    local child
+    kill -STOP "$1" || return 0
+    for child in $(pgrep -P "$1"); do kill_tree "$child"; done
+    kill -KILL "$1"
+}
+
+# What must be the same, whatever happened: matrices, the page, and the logs without their times.
+results() ( # a shell of its own, for its folder
+    cd "$1/small" || exit
+    cat ./*.tsv README.md
+    for log in *.log; do cut -f 1-3,6- "$log"; done
+)
+
+@test "reproduce --limit: stopped, killed and carried, to the same results" {
+    reproduce "${asked[@]}" --limit 20m -o whole 2>err || complain "$(tail err)"
+    [ "$(reproduce "${asked[@]}" --list -o whole/small)" = '0 runs, 0 million states to learn from' ]
+    results whole >expected
+
+    [ "$(reproduce "${asked[@]}" --list -o part/small | tail -n 1)" = '2 runs, 0.0256 million states to learn from' ]
+    # Killed by a signal that nothing can catch, with all of its children, and what it left carried elsewhere.
+    for moment in 2 5; do
+        reproduce "${asked[@]}" --limit 20m -o part 2>err 3>&- &
+        sleep $moment
+        kill_tree $!
+        wait $! || true
+        rm -rf carried
+        mkdir -p part
+        cp -r part carried
+        rm -rf part reproduce-*
+        mv carried part
+    done
+    # Out of time, told so, and gone on with; each time with a second more, for slow machines.
+    for i in $(seq 60); do
+        reproduce "${asked[@]}" --limit $((3 + i))s -o part >out 2>err || complain "$(tail err)"
+        [ -z "$(find part -size +16000000c)" ] || complain "files over 16 MB: $(ls -lR part)"
+        ! grep -q '^outstanding: 0 runs' out || break
+        mv part other
+        cp -r other part
+        rm -rf other
+    done
+    grep -q '^outstanding: 0 runs' out
+    results part | cmp expected -
+    [ -z "$(ls -d reproduce-* 2>/dev/null)" ] || complain "left over: $(ls -d reproduce-*)"
+}
+
+@test "reproduce --limit: pieces that are not whole are not gone on with" {
+    reproduce "${asked[@]}" --limit 3s -o part 2>err || true
+    mkdir -p part/small
+    printf 'no such sum\n' >part/small/x.ckpt.cut
+    printf 'half' >'part/small/x.ckpt.cut-no such sum-000'
+    status=0
+    reproduce "${asked[@]}" --limit 3s -o part 2>err || status=$?
+    [ "$status" = 65 ]
+    grep -q "part/./small/x.ckpt.cut: its pieces are not whole" err
+}
