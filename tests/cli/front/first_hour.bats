@@ -52,8 +52,8 @@ TINY_TRAINING='-n 2 --batch-states 64 --fill 20 --running 64 --memory 30'
     small 's|^scripts/setup demo .*|scripts/demo|' 's|^scripts/setup check .*|make deps check|' \
         's|^synpo-eval -n 2 <|synpo-eval -n 1 <|' 's|-n 300 -c|-n 3 -c|' 's|-n 20 < adapted|-n 1 < adapted|' \
         's|split -s 2|split --envs 3 --tasks 3 -n 5|' 's|split -w kitchen|& --envs 3 --tasks 3 -n 5|' \
-        's|-n 20000|-n 60|' "s|--time 30m|$TINY_TRAINING|" 's|--evaluate-every 1000|--evaluate-every 2 --evaluate-episodes 2|' \
-        's|-n 20 < kitchen|-n 1 < kitchen|' <all >script
+        's|-n 20000|-n 60|' "s|--time 30m|$TINY_TRAINING|" 's|-n 20 < kitchen|-n 1 < kitchen|' \
+        's|--evaluate-every 1000|--evaluate-every 2 --evaluate-episodes 2|' <all >script
     run_all script
     written all >names
     [ "$(wc -l <names)" -ge 20 ]
@@ -88,7 +88,8 @@ TINY_TRAINING='-n 2 --batch-states 64 --fill 20 --running 64 --memory 30'
     cp examples/play/maze/map21.txt new/
     small 's|split -s 1|split --envs 3 --tasks 3 -n 5|' 's|split -w kitchen|& --envs 3 --tasks 3 -n 5|' \
         's|-n 500|-n 60|' 's|-n 50 --batch-states 64|'"$TINY_TRAINING|" "s/--time (2h|30m)/$TINY_TRAINING/" \
-        's|--evaluate-every 1000|--evaluate-every 2 --evaluate-episodes 2 --every 1|' 's|-n 200000|-n 1 --trajectories 4 --memory 30|' \
+        's|--evaluate-every 1000|--evaluate-every 2 --evaluate-episodes 2 --every 1|' \
+        's|-n 200000|-n 1 --trajectories 4 --memory 30|' \
         "s|-s 1 -n 20000 < full|-s 1 $TINY_TRAINING < full|" 's|-n 20000|-n 60|' 's|-n 100 |-n 1 |' \
         's|synpo-eval -p full-pairs.tsv >|synpo-eval -n 1 -p full-pairs.tsv >|' 's|-n 20 |-n 1 |' \
         's|adapt -w gridworld:new|& -n 3|' 's|--steps 6e5 --lanes 64|--steps 64 --lanes 4 --rollout 8|' \
