@@ -290,7 +290,7 @@ help:
 	    deb 'Debian packages, in $(B)/deb' \
 	    fuzz 'feed every reader what it does not expect (tests/fuzz)' \
 	    clean 'remove $(B)/'
-	@echo; echo 'V=1 shows the commands; CXXFLAGS, DESTDIR, PREFIX and B=DIR for $(B)/ are kept. README.md has the rest.'
+	@echo; echo 'V=1 shows the commands; CXXFLAGS, DESTDIR, PREFIX and B=DIR (for $(B)/) are kept.'
 
 clean:
 	rm -rf $(B)
