@@ -57,10 +57,11 @@ const Scheme& find_scheme(const std::string& name) {
       {"safe", {255, 0.14}, {59, 0.13}, {160, 0.02}},
       {"purple-red", {305, 0.18}, {24, 0.165}, {250, 0.02}},
       {"blue-red", {258, 0.15}, {24, 0.165}, {160, 0.02}},
+      {"figure8", {305, 0.18}, {24, 0.165}, {24, 0.165}},
   };
   for (const Scheme& scheme : schemes)
     if (name == scheme.name) return scheme;
-  throw std::invalid_argument("expected safe, purple-red or blue-red");
+  throw std::invalid_argument("expected safe, purple-red, blue-red or figure8");
 }
 
 double luminance(Rgb colour) {

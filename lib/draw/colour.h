@@ -22,8 +22,8 @@ struct Scheme {
   Ramp seen, unseen, other;  // `other` is for a third kind of cells: new pairs, or those of part P
 };
 
-// "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figures 6 and 8), "blue-red" (Figures 4
-// and 5). Throws std::invalid_argument for any other name.
+// "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figure 6), "blue-red" (Figures 4 and 5),
+// "figure8" (part Q in purple, all else in red). Throws std::invalid_argument for any other name.
 const Scheme& find_scheme(const std::string& name);
 
 // The ramp of a group of the table; a grey one for all pairs (-1).

@@ -13,6 +13,17 @@ double value_at(const Curve& curve, double x) {
   return curve.y[right - 1] + share * (curve.y[right] - curve.y[right - 1]);
 }
 
+Curve running_mean(const Curve& curve, int64_t points) {
+  Curve out = curve;
+  for (size_t i = 0; i < curve.y.size(); ++i) {
+    const size_t first = i + 1 > size_t(points) ? i + 1 - size_t(points) : 0;
+    double sum = 0;
+    for (size_t k = first; k <= i; ++k) sum += curve.y[k];
+    out.y[i] = sum / double(i + 1 - first);
+  }
+  return out;
+}
+
 MeanCurve mean_curve(const std::vector<Curve>& runs, Band band, const Interval& bounds) {
   MeanCurve out;
   out.runs = int64_t(runs.size());

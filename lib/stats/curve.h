@@ -15,6 +15,9 @@ struct Curve {
 // Linear between the points. `x` lies from the first point to the last.
 double value_at(const Curve& curve, double x);
 
+// Each value becomes the mean of itself and of up to `points` - 1 values before it.
+Curve running_mean(const Curve& curve, int64_t points);
+
 enum class Band { kNone, kSd, kRange };
 
 struct MeanCurve {

@@ -20,7 +20,7 @@ int matrix_show(int argc, char** argv) {
       "synpo-matrix show", "[OPTION]... [MATRIX]...",
       "The matrix in the terminal, in coloured blocks where it has colour: tasks down, environments across, per cent.");
   options.text(0, "method", "NAME", "only the rows of this method", method)
-      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]",
+      .call(0, "scheme", "NAME", "safe, purple-red, blue-red or figure8 [safe]",
             [&](const std::string& name) { scheme = find_scheme(name).name; })
       .choice(0, "by", "KIND", "tell apart seen from unseen pairs, or parts: seen or part", by, {"seen", "part"})
       .choice(0, "colour", "WHEN", "auto, always or never", when, {"auto", "always", "never"})

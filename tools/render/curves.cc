@@ -37,6 +37,8 @@ Measure find_measure(const std::string& name, const std::string& pairs) {
   }
   static const Measure known[] = {
       {{"loss"}, {}, "loss", false},
+      {{"learning_rate"}, {}, "learning rate", false},
+      {{"states_per_s"}, {}, "states per second", false},
       {{"policy"}, {}, "policy loss (nats)", false},
       {{"env"}, {}, "environment loss (nats)", false},
       {{"task"}, {}, "task loss (nats)", false},
@@ -45,7 +47,9 @@ Measure find_measure(const std::string& name, const std::string& pairs) {
       {{"right_walk_on"}, {}, "right walking on (%)", true},
       {{"right_start"}, {}, "right starts (%)", true},
   };
-  Measure measure{{name == "reward_loss" ? "reward" : name}, {}, name == "reward_loss" ? "reward loss" : name, false};
+  std::string title = name;
+  std::replace(title.begin(), title.end(), '_', ' ');
+  Measure measure{{name == "reward_loss" ? "reward" : name}, {}, title, false};
   for (const Measure& candidate : known)
     if (candidate.columns[0] == name) measure = candidate;
   measure.parts = {""};
@@ -77,7 +81,7 @@ std::vector<Curve> read_curves(const std::string& path, RunLogAxis axis, double 
 int curves(int argc, char** argv) {
   CurvesStyle style;
   PictureOptions picture;
-  std::string x = "updates", y = "success", pairs = "both", band = "sd";
+  std::string x = "updates", y = "success", pairs = "both", band = "sd", log_axis = "none";
   double rate = 0;
   Options options(
       "synpo-render curves", "[OPTION]... [[LABEL=]LOG[,LOG]...]...",
@@ -99,6 +103,8 @@ int curves(int argc, char** argv) {
               style.y = parse_axis_range(text);
               style.y.name = "--y-range";
             })
+      .choice(0, "log-axis", "AXES", "logarithmic: none, x, y or xy", log_axis, {"none", "x", "y", "xy"})
+      .integer(0, "smooth", "N", "each point the mean of the last N of its run", style.smooth, 1, 10000)
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .call(0, "size", "WxH", "width and height in points [380x270, 620x270 for two panels]",
             [&](const std::string& text) { parse_curves_size(text, style); });
@@ -115,6 +121,8 @@ int curves(int argc, char** argv) {
   for (const CurveMark& mark : style.marks)
     if (!mark.part.empty() && std::find(measure.parts.begin(), measure.parts.end(), mark.part) == measure.parts.end())
       fail(Exit::kUsage, "a mark for ", mark.part, " pairs, which are not drawn");
+  style.log_x = log_axis.find('x') != std::string::npos;
+  style.log_y = log_axis.find('y') != std::string::npos;
   style.x_title = x;
   style.y_title = measure.title;
   style.percent = measure.percent;
@@ -129,6 +137,8 @@ int curves(int argc, char** argv) {
     methods.push_back({method.label, {}});
     for (const std::string& path : method.paths)
       methods.back().runs.push_back(read_curves(path, axis, rate > 0 ? 1 / rate / 60 : 1, measure, y));
+    for (std::vector<Curve>& run : methods.back().runs)
+      for (Curve& curve : run) curve = running_mean(curve, style.smooth);
   }
   picture.finish(output, draw_curves(average_runs(methods, measure.parts, style.band, measure.percent), style, font));
   return 0;

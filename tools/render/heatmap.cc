@@ -7,6 +7,7 @@
 #include "base/cli/options.h"
 #include "base/error.h"
 #include "base/files/io.h"
+#include "base/text.h"
 #include "draw/canvas/font.h"
 #include "draw/colour.h"
 #include "draw/plot/heatmap.h"
@@ -64,6 +65,20 @@ std::vector<HeatPanel> read_panels(const std::vector<LabelledFiles>& files, cons
   return panels;
 }
 
+// Tasks "O-R" as "(O, R)", environments by their place in natural order: map1 as env_0. A task of another name keeps
+// it.
+void name_as_paper(HeatFigure& figure) {
+  std::vector<std::string> envs = figure.panels[0].table.envs;
+  std::sort(envs.begin(), envs.end(), natural_less);
+  for (HeatPanel& panel : figure.panels) {
+    for (std::string& env : panel.table.envs)
+      env = concat("env_", std::lower_bound(envs.begin(), envs.end(), env, natural_less) - envs.begin());
+    for (std::string& task : panel.table.tasks)
+      if (const size_t dash = task.find('-'); dash != std::string::npos)
+        task = concat("(", task.substr(0, dash), ", ", task.substr(dash + 1), ")");
+  }
+}
+
 std::string ansi(const HeatFigure& figure, const HeatmapStyle& style, int width) {
   std::string text = style.title.empty() ? "" : style.title + "\n\n";
   for (const HeatPanel& panel : figure.panels) {
@@ -80,6 +95,7 @@ int heatmap(int argc, char** argv) {
   HeatmapStyle style;
   PictureOptions picture;
   PanelChoice choice;
+  std::string labels = "own";
   HeatOrder tasks = HeatOrder::kPaper, envs = HeatOrder::kPaper;
   bool no_values = false;
   Options options("synpo-render heatmap", "[OPTION]... [[LABEL=]MATRIX[,MATRIX]...]...",
@@ -91,26 +107,32 @@ int heatmap(int argc, char** argv) {
       .call(0, "task-order", "ORDER", "of tasks alone", [&](const std::string& name) { tasks = find_order(name); })
       .call(0, "env-order", "ORDER", "of environments alone", [&](const std::string& name) { envs = find_order(name); })
       .flag(0, "margins", "the mean of each task and each environment", style.margins)
-      .call(0, "scheme", "NAME", "safe, purple-red or blue-red [safe]",
+      .call(0, "scheme", "NAME", "safe, purple-red, blue-red or figure8 [safe]",
             [&](const std::string& name) { style.scheme = find_scheme(name).name; })
       .choice(0, "by", "COLUMN", "what the colours tell apart: seen or part", choice.colours, {"seen", "part"})
       .flag(0, "no-values", "leave the rates out of the cells", no_values)
       .real(0, "cell", "POINTS", "side of a cell; 0: by the size of the matrix", style.cell_pt, 0, 200)
+      .integer(0, "columns", "N", "panels in a row; 0: up to three, more in rows", style.columns, 0, 100)
+      .choice(0, "labels", "KIND", "own names, or the paper's: (O, R) and env_0", labels, {"own", "paper"})
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title));
   picture.add_ansi(options);
   picture.add_to(options);
   const std::vector<LabelledFiles> files = labelled_files(options.parse(argc, argv, 0, 1000));
-  picture.settle(options, {"margins", "no-values", "cell"});
+  picture.settle(options, {"margins", "no-values", "cell", "columns"});
   style.values = !no_values;
   style.scale = picture.scale;
   Output output = picture.open();
+  const auto read_figure = [&] {
+    HeatFigure figure = arrange(read_panels(files, choice), grid_task_names(), tasks, envs);
+    if (labels == "paper") name_as_paper(figure);
+    return figure;
+  };
   if (picture.ansi) {
     const int width = terminal_width(output.is_stdout() ? 1 : -1);
-    finish(output, ansi(arrange(read_panels(files, choice), grid_task_names(), tasks, envs), style, width));
+    finish(output, ansi(read_figure(), style, width));
     return 0;
   }
   const Font font(picture.font);
-  picture.finish(output,
-                 draw_heatmap(arrange(read_panels(files, choice), grid_task_names(), tasks, envs), style, font));
+  picture.finish(output, draw_heatmap(read_figure(), style, font));
   return 0;
 }

@@ -59,8 +59,8 @@ void PictureOptions::settle(const Options& options, std::vector<const char*> not
   if (format.empty() && !extension.empty() && !known) {
     std::vector<std::string> names;
     for (const std::string& one : formats_) names.push_back("." + one);
-    fail(Exit::kUsage, "cannot tell the format of the picture ", synpo::quoted(output), ": expected a name that ends in ",
-         alternatives(names), ", or --format");
+    fail(Exit::kUsage, "cannot tell the format of the picture ", synpo::quoted(output),
+         ": expected a name that ends in ", alternatives(names), ", or --format");
   }
   if (!format.empty() && known && extension != format)
     fail(Exit::kUsage, "--format ", format, " does not go with the name ", synpo::quoted(output));

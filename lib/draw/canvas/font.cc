@@ -151,6 +151,46 @@ std::string Font::fitted(const std::string& text, int size, int width) const {
   return shortened(fits);
 }
 
+std::vector<std::string> Font::fitted_apart(const std::vector<std::string>& names, int size, int width) const {
+  std::vector<std::string> out;
+  std::map<std::string, std::set<std::string>> sharing;  // names by what they were shortened to
+  for (const std::string& name : names) {
+    out.push_back(fitted(name, size, width));
+    sharing[out.back()].insert(name);
+  }
+  for (const auto& [same, group] : sharing) {
+    if (group.size() < 2) continue;
+    // In order, so the first and the last share least.
+    const std::string &first = *group.begin(), &last = *group.rbegin();
+    const size_t differ =
+        size_t(std::mismatch(first.begin(), first.end(), last.begin(), last.end()).first - first.begin());
+    std::map<std::string, std::string> apart;
+    std::set<std::string> different;
+    for (const std::string& name : group) {
+      const std::vector<size_t> starts = character_starts(name);
+      size_t from = size_t(std::upper_bound(starts.begin(), starts.end(), differ) - starts.begin()) - 1, to = from;
+      const auto cut = [&](size_t end) {
+        return kEllipsis + name.substr(starts[from], starts[end] - starts[from]) +
+               (end + 1 < starts.size() ? kEllipsis : "");
+      };
+      while (to + 1 < starts.size() && to - from < size_t(std::max(width, 0)) &&
+             this->width(cut(to + 1), size) <= width)
+        ++to;
+      apart[name] = cut(to);
+      different.insert(apart[name]);
+    }
+    int number = 0;
+    if (different.size() < group.size())
+      for (auto& [name, shown] : apart) {
+        const std::string mark = concat("#", ++number);
+        shown = fitted(name, size, width - this->width(mark, size) - size / 8) + mark;
+      }
+    for (size_t i = 0; i < names.size(); ++i)
+      if (const auto shown = apart.find(names[i]); shown != apart.end() && out[i] == same) out[i] = shown->second;
+  }
+  return out;
+}
+
 std::vector<std::string> Font::wrapped(const std::string& text, int size, int width) const {
   std::vector<std::string> lines;
   std::string line;

@@ -45,6 +45,9 @@ class Font {
   int digit_height(int size) const;
   // `text`, or its beginning and end with an ellipsis between them, so that it is at most `width` pixels wide.
   std::string fitted(const std::string& text, int size, int width) const;
+  // Each of the names fitted, so that different ones stay different: where both ends are alike, by what lies between,
+  // or by a number.
+  std::vector<std::string> fitted_apart(const std::vector<std::string>& names, int size, int width) const;
   // `text` broken at line ends, and at blanks into lines of at most `width` pixels; a longer word is fitted.
   std::vector<std::string> wrapped(const std::string& text, int size, int width) const;
 

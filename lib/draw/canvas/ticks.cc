@@ -53,7 +53,36 @@ std::string tick_text(double value, double step) {
   return value < 0 ? std::string("\u2212") + text : text;
 }
 
+Ticks log_ticks(double low, double high, int most) {
+  const int first = int(std::floor(std::log10(low) + kSlack)), last = int(std::floor(std::log10(high) + kSlack));
+  Ticks ticks{0, {}};
+  const auto choose = [&](const std::vector<double>& factors, int every) {
+    ticks.at.clear();
+    for (int power = first; power <= last; ++power)
+      for (const double factor : factors)
+        if (const double at = factor * std::pow(10, power);
+            power % every == 0 && at >= low * (1 - kSlack) && at <= high * (1 + kSlack))
+          ticks.at.push_back(at);
+    return int(ticks.at.size()) <= most;
+  };
+  if (choose({1, 2, 5}, 1)) return ticks;
+  for (int every = 1; !choose({1}, every);) ++every;
+  return ticks;
+}
+
+std::string Axis::label(double value, const Ticks& ticks) const {
+  if (!logarithmic) return tick_text(value / unit, ticks.step / unit);
+  return tick_text(value / unit, std::pow(10, std::floor(std::log10(value / unit) + kSlack)));
+}
+
+double Axis::place(double value) const {
+  // Where there is no logarithm, it is far below the axis.
+  if (logarithmic) return value > 0 ? std::log(value / low) / std::log(high / low) : -1e3;
+  return (value - low) / (high - low);
+}
+
 Ticks Axis::ticks(int most) const {
+  if (logarithmic) return log_ticks(low, high, most);
   Ticks out = nice_ticks(low / unit, high / unit, most);
   out.step *= unit;
   for (double& at : out.at) at *= unit;

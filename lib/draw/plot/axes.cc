@@ -24,7 +24,10 @@ Ticks Axes::x_ticks(int width) const {
     if (most == 2) return ticks;
     int labels = 0;
     for (const double at : ticks.at) labels = std::max(labels, font_.width(x_.label(at, ticks), pixels(kLabelPt)));
-    if ((labels + pixels(kBetweenLabelsPt)) / double(width) <= ticks.step / (x_.high - x_.low)) return ticks;
+    double nearest = 1;  // shares of the way
+    for (size_t i = 1; i < ticks.at.size(); ++i)
+      nearest = std::min(nearest, x_.place(ticks.at[i]) - x_.place(ticks.at[i - 1]));
+    if ((labels + pixels(kBetweenLabelsPt)) / double(width) <= nearest) return ticks;
   }
 }
 

@@ -1,7 +1,11 @@
 #include "draw/plot/curves.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -13,10 +17,36 @@
 namespace synpo {
 namespace {
 
-constexpr double kMarkLinePt = 0.8;
+constexpr double kMarkLinePt = 0.8, kBandEdgePt = 0.4, kMarkersApartPt = 34;
 // Okabe and Ito's palette (2008), which colour-blind readers tell apart, without its yellow, the darker ones first.
 constexpr Rgb kColours[kMostMethods] = {{0, 114, 178}, {213, 94, 0},   {0, 158, 115}, {204, 121, 167},
                                         {40, 40, 40},  {86, 180, 233}, {230, 159, 0}};
+
+// The paper's methods in the order of their looks.
+constexpr const char* kPaperMethods[] = {"synpo", "mlp", "mtl", "modulenet", "sf"};
+
+// Their own looks for the paper's methods; the first that are left for others.
+size_t look_of(const CurveSet& set, size_t method) {
+  const auto paper_look = [](const std::string& label) {
+    std::string name = label;
+    std::transform(name.begin(), name.end(), name.begin(), [](char c) { return char(std::tolower(uint8_t(c))); });
+    return size_t(std::find(std::begin(kPaperMethods), std::end(kPaperMethods), name) - std::begin(kPaperMethods));
+  };
+  std::vector<size_t> looks;
+  std::vector<bool> taken(kMostMethods);
+  for (const CurveSet::Method& each : set.methods) {
+    const size_t look = paper_look(each.label);
+    const bool own = look < std::size(kPaperMethods) && !taken[look];
+    looks.push_back(own ? look : kMostMethods);
+    if (own) taken[look] = true;
+  }
+  for (size_t& look : looks) {
+    if (look < kMostMethods) continue;
+    look = size_t(std::find(taken.begin(), taken.end(), false) - taken.begin());
+    taken[look] = true;
+  }
+  return looks[method];
+}
 
 std::vector<Point> places(const Axes& axes, const Box& plot, const std::vector<double>& x,
                           const std::vector<double>& y) {
@@ -59,29 +89,53 @@ void draw_marks(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout,
   }
 }
 
-void draw_band(Canvas& canvas, std::vector<Point> high, const std::vector<Point>& low, Rgb colour, const Box& plot) {
+// A band with thin edges, so that it is seen among others.
+void draw_band(Canvas& canvas, std::vector<Point> high, const std::vector<Point>& low, Rgb colour, double opacity,
+               double scale, const Box& plot) {
+  for (const auto& edge : {high, low}) canvas.line(edge, kBandEdgePt * scale, mix(colour, kPaper, 0.5), {}, plot);
   high.insert(high.end(), low.rbegin(), low.rend());
-  canvas.polygon(high, colour, kBandOpacity, plot);
+  canvas.polygon(high, colour, opacity, plot);
+}
+
+// At values about as far apart as one another, those of different methods beside one another.
+void draw_markers(Canvas& canvas, const std::vector<Point>& line, const CurveLook& look, size_t method, size_t methods,
+                  double scale, const Box& plot) {
+  const double apart = kMarkersApartPt * scale;
+  double next = plot.x + apart * (double(method) + 0.5) / double(methods);
+  for (size_t i = 0; i < line.size(); ++i) {
+    const Point at = line[i];
+    const bool inside = at.x >= plot.x && at.x <= plot.right() && at.y >= plot.y && at.y <= plot.bottom();
+    // The value that is nearest to the place.
+    if (!inside || (i + 1 < line.size() && line[i + 1].x <= next) || at.x < next - apart / 2) continue;
+    draw_curve_marker(canvas, at, look, scale);
+    while (next <= at.x + apart / 2) next += apart;
+  }
+}
+
+void draw_mean(Canvas& canvas, const std::vector<Point>& line, const CurveLook& look, size_t method, size_t methods,
+               double scale, const Box& plot) {
+  // A line along an edge is drawn in its full width.
+  const int reach = int(std::ceil(kCurvePt * scale / 2));
+  const Box clip = {plot.x - reach, plot.y - reach, plot.width + 2 * reach, plot.height + 2 * reach};
+  canvas.line(line, kCurvePt * scale, look.colour, curve_dash(look, scale), clip);
+  if (look.marker != Marker::kNone) draw_markers(canvas, line, look, method, methods, scale, plot);
 }
 
 // The first method is drawn last, on top.
 void draw_lines(Canvas& canvas, const CurveSet& set, const CurvesLayout& layout, const CurvesLayout::Panel& panel,
                 double scale, bool bands) {
-  // A line along an edge is drawn in its full width.
-  const int reach = int(std::ceil(kCurvePt * scale / 2));
   const Box plot = panel.plot;
-  const Box clip = {plot.x - reach, plot.y - reach, plot.width + 2 * reach, plot.height + 2 * reach};
   for (size_t method = set.methods.size(); method-- > 0;)
     for (const int part : panel.parts) {
       const auto& curve = set.methods[method].parts[part];
       if (!curve) continue;
       const CurveLook look = curve_look(set, layout.one_panel, method, part);
       if (!bands)
-        canvas.line(places(layout.axes, plot, curve->x, curve->mean), kCurvePt * scale, look.colour,
-                    curve_dash(look, scale), clip);
+        draw_mean(canvas, places(layout.axes, plot, curve->x, curve->mean), look, method, set.methods.size(), scale,
+                  plot);
       else if (!curve->low.empty())
         draw_band(canvas, places(layout.axes, plot, curve->x, curve->high),
-                  places(layout.axes, plot, curve->x, curve->low), look.colour, plot);
+                  places(layout.axes, plot, curve->x, curve->low), look.colour, band_opacity(set), scale, plot);
     }
 }
 
@@ -115,7 +169,58 @@ CurveSet average_runs(const std::vector<MethodRuns>& methods, const std::vector<
 
 CurveLook curve_look(const CurveSet& set, bool one_panel, size_t method, size_t part) {
   const bool styles = one_panel && set.parts.size() == 2;
-  return {kColours[set.methods.size() == 1 && styles ? part : method], styles && part == 0};
+  if (set.methods.size() == 1) return {kColours[styles ? part : look_of(set, 0)], styles && part == 0, Marker::kNone};
+  const size_t look = look_of(set, method);
+  return {kColours[look], styles && part == 0, Marker(look + 1)};
+}
+
+double band_opacity(const CurveSet& set) { return set.methods.size() <= 2 ? 0.2 : 0.1; }
+
+void draw_curve_marker(Canvas& canvas, Point centre, const CurveLook& look, double scale) {
+  constexpr double kRadiusPt = 2.7;
+  const auto draw = [&](double radius, Rgb colour) {
+    const auto polygon = [&](std::vector<Point> corners) {
+      for (Point& p : corners) p = {centre.x + radius * p.x, centre.y + radius * p.y};
+      canvas.polygon(corners, colour);
+    };
+    switch (look.marker) {
+      case Marker::kNone:
+        break;
+      case Marker::kDisc:
+      case Marker::kRing:
+        canvas.disc(centre, radius, colour);
+        break;
+      case Marker::kSquare:
+        polygon({{-0.88, -0.88}, {0.88, -0.88}, {0.88, 0.88}, {-0.88, 0.88}});
+        break;
+      case Marker::kTriangle:
+        polygon({{0, -1.25}, {1.15, 0.8}, {-1.15, 0.8}});
+        break;
+      case Marker::kDiamond:
+        polygon({{0, -1.35}, {1.2, 0}, {0, 1.35}, {-1.2, 0}});
+        break;
+      case Marker::kTriangleDown:
+        polygon({{0, 1.25}, {1.15, -0.8}, {-1.15, -0.8}});
+        break;
+      case Marker::kCross:
+        polygon({{-0.4, -1.2},
+                 {0.4, -1.2},
+                 {0.4, -0.4},
+                 {1.2, -0.4},
+                 {1.2, 0.4},
+                 {0.4, 0.4},
+                 {0.4, 1.2},
+                 {-0.4, 1.2},
+                 {-0.4, 0.4},
+                 {-1.2, 0.4},
+                 {-1.2, -0.4},
+                 {-0.4, -0.4}});
+        break;
+    }
+  };
+  draw((kRadiusPt + 0.6) * scale, kPaper);
+  draw(kRadiusPt * scale, look.colour);
+  if (look.marker == Marker::kRing) canvas.disc(centre, 0.5 * kRadiusPt * scale, kPaper);
 }
 
 Dash curve_dash(const CurveLook& look, double scale) { return look.dashed ? Dash{2.6 * scale, 3.2 * scale} : Dash{}; }

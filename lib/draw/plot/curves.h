@@ -61,6 +61,8 @@ struct CurvesStyle {
   std::vector<CurveMark> marks;
   int64_t panels = 0;                  // 1 or 2 for two parts; 0: 2 where there are several methods
   double width_pt = 0, height_pt = 0;  // of the picture; 0: by the number of panels
+  bool log_x = false, log_y = false;   // logarithmic axes
+  int64_t smooth = 1;                  // points of the running mean that the curves are, for the caption
   double scale = 2;                    // pixels per point
 };
 
@@ -89,18 +91,25 @@ struct CurvesLayout {
 
 constexpr Cause kNoRoomForAxes{"no room for the axes"}, kMarkOutside{"a mark outside the axis"};
 
-// Throws kUsage where the size leaves no room for the axes (kNoRoomForAxes), for more than kMostMethods, for a range
-// that leaves nothing of an axis, and for a mark outside the range given (kMarkOutside).
+// Throws kData for a logarithmic axis without a value above 0; kUsage where the size leaves no room for the axes
+// (kNoRoomForAxes), for more than kMostMethods, for a range that leaves nothing of an axis, and for a mark outside the
+// range given (kMarkOutside).
 CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
 Canvas draw_curves(const CurveSet& set, const CurvesStyle& style, const Font& font);
 
-// How a line is drawn. With several methods the colour tells the method, and in one panel seen pairs are dashed.
+// How a line is drawn. With several methods the colour and, on paper without colours, the marker tell the method, and
+// in one panel seen pairs are dashed. The paper's methods look alike in every picture, whatever stands beside them.
+enum class Marker { kNone, kDisc, kSquare, kTriangle, kDiamond, kTriangleDown, kCross, kRing };
 struct CurveLook {
   Rgb colour;
   bool dashed;
+  Marker marker;
 };
 CurveLook curve_look(const CurveSet& set, bool one_panel, size_t method, size_t part);
-constexpr double kCurvePt = 1.5, kBandOpacity = 0.2;
+constexpr double kCurvePt = 1.5;
 Dash curve_dash(const CurveLook& look, double scale);
+// The fewer bands there are, the stronger they may be.
+double band_opacity(const CurveSet& set);
+void draw_curve_marker(Canvas& canvas, Point centre, const CurveLook& look, double scale);
 
 }  // namespace synpo

@@ -44,6 +44,19 @@ double round_end(double high) {
   return up < 1.01 * high ? up : high;
 }
 
+void check_range(const CurvesStyle& style, double low, double high) {
+  if (high <= low) fail(Exit::kUsage, style.y.name, " leaves nothing between ", low, " and ", high);
+  for (const CurveMark& mark : style.marks)
+    if (mark.value < low || mark.value > high)
+      fail(Exit::kUsage, kMarkOutside, "the mark at ", mark.value, " lies outside the axis from ", low, " to ", high);
+}
+
+void check_log(bool logarithmic, double low, double high, const std::string& what) {
+  if (logarithmic && !(low > 0 && high > 0 && std::isfinite(low)))
+    fail(Exit::kData, "a logarithmic axis of ", what, " needs values above 0",
+         std::isfinite(low) ? concat(", found ", low) : "");
+}
+
 Axis x_axis(const CurveSet& set, const CurvesStyle& style) {
   double low = style.x.low, high = style.x.high;
   if (std::isnan(high)) {
@@ -51,9 +64,38 @@ Axis x_axis(const CurveSet& set, const CurvesStyle& style) {
     for_curves(set, [&](const MeanCurve& curve) { high = std::max(high, curve.x.back()); });
     if (high > 0) high = round_end(high);
   }
+  if (std::isnan(low) && style.log_x) {
+    low = INFINITY;
+    for_curves(set, [&](const MeanCurve& curve) {
+      for (const double x : curve.x)
+        if (x > 0) low = std::min(low, x);
+    });
+  }
   if (std::isnan(low)) low = 0;
-  if (high <= low) high = low + std::max(1.0, std::abs(low));
-  return count_axis(style.x_title, low, high);
+  check_log(style.log_x, low, high, style.x_title);
+  if (high <= low) high = style.log_x ? 10 * low : low + std::max(1.0, std::abs(low));
+  Axis axis = count_axis(style.x_title, low, high);
+  axis.logarithmic = style.log_x;
+  return axis;
+}
+
+// From the power of ten below the lowest value above 0 to the one above the highest.
+Axis log_y_axis(const CurveSet& set, const CurvesStyle& style, const Span& span) {
+  double low = style.y.low, high = style.y.high;
+  if (std::isnan(high)) high = std::pow(10, std::ceil(std::log10(span.high) - 1e-9));
+  if (std::isnan(low)) {
+    low = INFINITY;
+    for_curves(set, [&](const MeanCurve& curve) {
+      for (const double y : curve.mean)
+        if (y > 0) low = std::min(low, y);
+    });
+    check_log(true, low, span.high, style.y_title);
+    low = std::pow(10, std::floor(std::log10(low) + 1e-9));
+    if (low >= high) high = 10 * low;
+  }
+  check_log(true, low, high, style.y_title);
+  check_range(style, low, high);
+  return {low, high, 1, style.y_title, true};
 }
 
 Axis y_axis(const CurveSet& set, const CurvesStyle& style, const Axis& x, int most_ticks) {
@@ -69,20 +111,17 @@ Axis y_axis(const CurveSet& set, const CurvesStyle& style, const Axis& x, int mo
   });
   for (const CurveMark& mark : style.marks) span.add(mark.value);
   if (span.low > span.high) span = {0, 1};  // no point is in sight
+  if (style.log_y) return log_y_axis(set, style, span);
   const bool given = !std::isnan(style.y.low) && !std::isnan(style.y.high);
   Axis axis = style.percent || given ? Axis{0, 100, 1, style.y_title}
                                      : value_axis(style.y_title, span.low, span.high, most_ticks);
   if (!std::isnan(style.y.low)) axis.low = style.y.low;
   if (!std::isnan(style.y.high)) axis.high = style.y.high;
-  if (axis.high <= axis.low) fail(Exit::kUsage, style.y.name, " leaves nothing between ", axis.low, " and ", axis.high);
-  for (const CurveMark& mark : style.marks)
-    if (mark.value < axis.low || mark.value > axis.high)
-      fail(Exit::kUsage, kMarkOutside, "the mark at ", mark.value, " lies outside the axis from ", axis.low, " to ",
-           axis.high);
+  check_range(style, axis.low, axis.high);
   return axis;
 }
 
-std::string caption_of(const CurveSet& set, Band band) {
+std::string caption_of(const CurveSet& set, Band band, int64_t smooth) {
   int64_t fewest = INT64_MAX, most = 0;
   bool cut = false;
   for_curves(set, [&](const MeanCurve& curve) {
@@ -90,11 +129,13 @@ std::string caption_of(const CurveSet& set, Band band) {
     most = std::max(most, curve.runs);
     cut = cut || curve.longest > curve.x.back() * 1.02;
   });
-  if (most < 2) return "";
+  const std::string smoothed = smooth > 1 ? concat("each point the mean of the last ", smooth, " of its run") : "";
+  if (most < 2) return smoothed;
   std::string out =
       fewest == most ? concat("mean of ", most, " runs") : concat("mean of ", fewest, " to ", most, " runs");
   if (band == Band::kSd) out += "; band: standard deviation (divisor n \u2212 1)";
   if (band == Band::kRange) out += "; band: lowest to highest run";
+  if (!smoothed.empty()) out += "; " + smoothed;
   return out + (cut ? "; a mean ends with its shortest run" : "");
 }
 
@@ -123,7 +164,7 @@ CurvesLayout lay_out_curves(const CurveSet& set, const CurvesStyle& style, const
                    .one_panel = one_panel,
                    .panels = {},
                    .axes = Axes(x, y, style.scale, font)};
-  out.heading = Heading(style.title, caption_of(set, style.band), inside, style.scale, font);
+  out.heading = Heading(style.title, caption_of(set, style.band, style.smooth), inside, style.scale, font);
   int top = margin + out.heading.height();
   out.legend_y = top;
   if (const int legend = lay_out_curves_legend(set, one_panel, style.scale, inside, font).height) top += legend + px(3);

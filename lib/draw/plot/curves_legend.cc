@@ -15,6 +15,7 @@ constexpr double kTextPt = 8.5, kSamplePt = 24, kSpacePt = 5, kBetweenPt = 14, k
 CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double scale, int width, const Font& font) {
   const Pixels px{scale};
   CurvesLegend legend;
+  legend.band_opacity = band_opacity(set);
   const auto add = [&](const std::string& name, const CurveLook& look, bool band) {
     legend.entries.push_back({font.fitted(name, px(kTextPt), width - px(kSamplePt + kSpacePt)), look, band, 0, 0});
   };
@@ -31,12 +32,13 @@ CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double s
             curve_look(set, one_panel, 0, part),
             set.methods[0].parts[part] && !set.methods[0].parts[part]->low.empty());
     } else if (!label.empty()) {
-      add(label, {curve_look(set, false, method, 0).colour, false}, banded(set.methods[method]));
+      const CurveLook look = curve_look(set, false, method, 0);
+      add(label, {look.colour, false, look.marker}, banded(set.methods[method]));
     }
   }
   if (set.methods.size() > 1 && styles)
     for (size_t part = 0; part < 2; ++part)
-      add(set.parts[part] + " pairs", {kSoftInk, curve_look(set, true, 0, part).dashed}, false);
+      add(set.parts[part] + " pairs", {kSoftInk, curve_look(set, true, 0, part).dashed, Marker::kNone}, false);
 
   int x = 0, y = 0;
   for (CurvesLegend::Entry& entry : legend.entries) {
@@ -60,9 +62,11 @@ void draw_curves_legend(Canvas& canvas, const CurvesLegend& legend, int x, int y
     const double middle = sample.y + sample.height / 2.0;
     const double left = sample.x, right = sample.right(), top = sample.y, bottom = sample.bottom();
     if (entry.band)
-      canvas.polygon({{left, top}, {right, top}, {right, bottom}, {left, bottom}}, entry.look.colour, kBandOpacity);
+      canvas.polygon({{left, top}, {right, top}, {right, bottom}, {left, bottom}}, entry.look.colour,
+                     legend.band_opacity);
     const std::vector<Point> line = {{sample.x + scale, middle}, {sample.right() - scale, middle}};
     canvas.line(line, kCurvePt * scale, entry.look.colour, curve_dash(entry.look, scale), sample);
+    draw_curve_marker(canvas, {sample.x + sample.width / 2.0, middle}, entry.look, scale);
     canvas.text(sample.right() + px(kSpacePt), sample.y + sample.height / 2, entry.name, px(kTextPt), kInk,
                 Across::kLeft, Upright::kMiddle);
   }

@@ -18,6 +18,7 @@ struct CurvesLegend {
   };
   std::vector<Entry> entries;
   int height = 0;
+  double band_opacity = 0;
 };
 
 // No entries where there is one line without a name. `width` is what a row may take.

@@ -2,8 +2,10 @@
 
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <vector>
 
+#include "draw/canvas/ticks.h"
 #include "draw/colour.h"
 
 namespace synpo {
@@ -29,7 +31,41 @@ void for_branches(const Dendrogram& tree, int pitch, int depth, Stem stem, Bar b
   }
 }
 
+constexpr double kScaleSpacePt = 4, kScaleTickPt = 2.5, kScaleTextPt = 7;
+
+// Calls tick(at, label) with the distance from the leaves, in pixels; nowhere where all are alike.
+template <class Tick>
+void for_scale(const Dendrogram& tree, int depth, Tick tick) {
+  if (tree.height() <= 1e-9) return;
+  const Ticks ticks = nice_ticks(0, tree.height(), 3);
+  for (const double at : ticks.at) tick(int(std::lround(at / tree.height() * depth)), tick_text(at, ticks.step));
+}
+
 }  // namespace
+
+int tree_scale_height(const Pixels& px) {
+  return px(kScaleSpacePt) + px(kScaleTickPt) + px(2) + px(kScaleTextPt) * 5 / 4;
+}
+
+void draw_scale_beneath(Canvas& canvas, const Dendrogram& tree, int x, int y, int depth, int line, const Pixels& px) {
+  if (tree.height() <= 1e-9) return;
+  const int top = y + px(kScaleSpacePt), tick = px(kScaleTickPt);
+  canvas.fill({x, top, depth, line}, kSoftInk);
+  for_scale(tree, depth - line, [&](int at, const std::string& label) {
+    canvas.fill({x + at, top, line, tick}, kSoftInk);
+    canvas.text(x + at, top + tick + px(2), label, px(kScaleTextPt), kSoftInk, Across::kCentre);
+  });
+}
+
+void draw_scale_left(Canvas& canvas, const Dendrogram& tree, int x, int y, int depth, int line, const Pixels& px) {
+  if (tree.height() <= 1e-9) return;
+  const int right = x - px(kScaleSpacePt), tick = px(kScaleTickPt);
+  canvas.fill({right, y - depth, line, depth}, kSoftInk);
+  for_scale(tree, depth - line, [&](int at, const std::string& label) {
+    canvas.fill({right - tick, y - at - line, tick, line}, kSoftInk);
+    canvas.text(right - tick - px(2), y - at, label, px(kScaleTextPt), kSoftInk, Across::kRight, Upright::kMiddle);
+  });
+}
 
 void draw_tree_right(Canvas& canvas, const Dendrogram& tree, int x, int y, int pitch, int depth, int line) {
   for_branches(

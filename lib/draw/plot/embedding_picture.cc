@@ -64,10 +64,10 @@ void draw_scores(Canvas& canvas, const Box& plot, const Embeddings& panel, const
   axes.frame(canvas, plot);
   const int side = px(panel.marks.empty() ? 7 : 9), size = px(kNamePt);
   std::vector<LabelledPoint> points;
+  const std::vector<std::string> names = canvas.font().fitted_apart(panel.names, size, plot.width / 3);
   for (size_t i = 0; i < panel.names.size(); ++i) {
     const Point at = axes.place(plot, pca.scores[2 * i], pca.scores[2 * i + 1]);
-    points.push_back({{int(std::lround(at.x)) - side / 2, int(std::lround(at.y)) - side / 2, side, side},
-                      canvas.font().fitted(panel.names[i], size, plot.width / 3)});
+    points.push_back({{int(std::lround(at.x)) - side / 2, int(std::lround(at.y)) - side / 2, side, side}, names[i]});
   }
   const std::vector<Box> labels = place_labels(points, size, plot, canvas.font());
   for (size_t i = 0; i < points.size(); ++i) draw_marker(canvas, points[i].marker, panel, i);
@@ -118,8 +118,9 @@ void draw_distances(Canvas& canvas, int x, int y, const Embeddings& panel, const
   const int count = int(panel.names.size()), side = plan.side(panel), cell = plan.cell,
             gap = cell >= px(8) ? px(0.75) : 0;
   const int left = x + plan.before(), below = y + side + px(3), marker = plan.marker - px(3);
+  const std::vector<std::string> names = canvas.font().fitted_apart(panel.names, plan.name_size, plan.names - px(4));
   for (int i = 0; i < count; ++i) {
-    const std::string name = canvas.font().fitted(panel.names[i], plan.name_size, plan.names - px(4));
+    const std::string& name = names[size_t(i)];
     const int middle = i * cell + cell / 2;
     canvas.text(x + plan.names - px(4), y + middle, name, plan.name_size, kInk, Across::kRight, Upright::kMiddle);
     canvas.text_up(left + middle, below + plan.marker, name, plan.name_size, kInk, Across::kRight);

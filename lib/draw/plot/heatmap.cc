@@ -111,17 +111,16 @@ void draw_margins(Canvas& canvas, const HeatTable& table, const HeatmapLayout::P
     for (size_t env = 0; env < margin.envs.size(); ++env)
       draw({matrix.x + int(env) * layout.cell, y, side, across}, margin.envs[env]);
     if (layout.margin_labels_up)
-      canvas.text_up(x + across / 2, layout.margin_labels_y, margin.name, layout.label_size, kInk, Across::kRight);
+      canvas.text_up(x + across / 2, panel.margin_labels_y, margin.name, layout.label_size, kInk, Across::kRight);
     else
-      canvas.text(x + across / 2, layout.margin_labels_y, margin.name, layout.label_size, kInk, Across::kCentre);
-    if (&panel == &layout.panels[0])
+      canvas.text(x + across / 2, panel.margin_labels_y, margin.name, layout.label_size, kInk, Across::kCentre);
+    if (panel.first)
       canvas.text(matrix.x - space, y + across / 2, margin.name, layout.label_size, kInk, Across::kRight,
                   Upright::kMiddle);
   }
 }
 
-void draw_task_labels(Canvas& canvas, const HeatmapLayout& layout) {
-  const Box& matrix = layout.panels[0].matrix;
+void draw_task_labels(Canvas& canvas, const Box& matrix, const HeatmapLayout& layout) {
   const int middle = (layout.cell - layout.gap) / 2;
   for (size_t i = 0; i < layout.task_labels.size(); ++i)
     canvas.text(matrix.x - layout.pixels(5), matrix.y + int(i) * layout.cell + middle, layout.task_labels[i],
@@ -130,30 +129,36 @@ void draw_task_labels(Canvas& canvas, const HeatmapLayout& layout) {
   canvas.text_up(layout.margin + size / 2, matrix.y + matrix.height / 2, kTaskAxis, size, kSoftInk, Across::kCentre);
 }
 
-void draw_env_labels(Canvas& canvas, const Box& matrix, const HeatmapLayout& layout) {
+void draw_env_labels(Canvas& canvas, const HeatmapLayout::Panel& panel, const HeatmapLayout& layout) {
+  const Box& matrix = panel.matrix;
   const int middle = (layout.cell - layout.gap) / 2;
   for (size_t i = 0; i < layout.env_labels.size(); ++i) {
     const int x = matrix.x + int(i) * layout.cell + middle;
     if (layout.env_labels_up)
-      canvas.text_up(x, layout.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kRight);
+      canvas.text_up(x, panel.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kRight);
     else
-      canvas.text(x, layout.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kCentre);
+      canvas.text(x, panel.env_labels_y, layout.env_labels[i], layout.label_size, kInk, Across::kCentre);
   }
-  canvas.text(matrix.x + matrix.width / 2, layout.env_axis_y, kEnvAxis, layout.pixels(kAxisPt), kSoftInk,
+  canvas.text(matrix.x + matrix.width / 2, panel.env_axis_y, kEnvAxis, layout.pixels(kAxisPt), kSoftInk,
               Across::kCentre);
 }
 
-// Beside the last panel the tree of the tasks, above each panel that of the environments.
-void draw_trees(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout& layout) {
-  const int line = layout.pixels(0.6), middle = (layout.cell - layout.gap - line) / 2;
-  const HeatmapLayout::Panel& last = layout.panels.back();
-  if (figure.task_tree)
-    draw_tree_right(canvas, *figure.task_tree, layout.right_of(last) + layout.tree_space, last.matrix.y + middle,
-                    layout.cell, layout.tree_depth, line);
-  if (figure.env_tree)
-    for (const HeatmapLayout::Panel& panel : layout.panels)
-      draw_tree_up(canvas, *figure.env_tree, panel.matrix.x + middle, panel.matrix.y - layout.tree_space, layout.cell,
-                   layout.tree_depth, line);
+// Beside the last panel of a row the tree of the tasks, above each panel that of the environments.
+void draw_trees(Canvas& canvas, const HeatFigure& figure, const HeatmapLayout::Panel& panel,
+                const HeatmapLayout& layout) {
+  const Pixels px{layout.scale};
+  const int line = px(0.6), middle = (layout.cell - layout.gap - line) / 2;
+  const Box& matrix = panel.matrix;
+  if (figure.task_tree && panel.last) {
+    const int x = layout.right_of(panel) + layout.tree_space;
+    draw_tree_right(canvas, *figure.task_tree, x, matrix.y + middle, layout.cell, layout.tree_depth, line);
+    draw_scale_beneath(canvas, *figure.task_tree, x, matrix.bottom(), layout.tree_depth, line, px);
+  }
+  if (figure.env_tree) {
+    const int y = matrix.y - layout.tree_space;
+    draw_tree_up(canvas, *figure.env_tree, matrix.x + middle, y, layout.cell, layout.tree_depth, line);
+    if (panel.first) draw_scale_left(canvas, *figure.env_tree, matrix.x, y, layout.tree_depth, line, px);
+  }
 }
 
 }  // namespace
@@ -163,17 +168,17 @@ Canvas draw_heatmap(const HeatFigure& figure, const HeatmapStyle& style, const F
   const HeatmapLayout layout = lay_out_heatmap(figure, style, font);
   Canvas canvas(layout.width, layout.height, font, style.scale);
   layout.heading.draw(canvas, layout.margin, layout.margin);
-  draw_task_labels(canvas, layout);
   for (size_t i = 0; i < layout.panels.size(); ++i) {
     const HeatTable& table = figure.panels[i].table;
     const HeatmapLayout::Panel& panel = layout.panels[i];
     panel.heading.draw(canvas, panel.matrix.x, panel.heading_y);
     draw_cells(canvas, table, panel.matrix, layout, scheme);
-    draw_env_labels(canvas, panel.matrix, layout);
+    if (panel.first) draw_task_labels(canvas, panel.matrix, layout);
+    draw_env_labels(canvas, panel, layout);
     draw_margins(canvas, table, panel, layout, scheme);
     if (!table.parts.empty()) draw_part_borders(canvas, table, panel.matrix, layout);
+    draw_trees(canvas, figure, panel, layout);
   }
-  draw_trees(canvas, figure, layout);
   draw_legend(canvas, figure, layout, scheme);
   return canvas;
 }

@@ -1,6 +1,7 @@
 // Success matrices as pictures: tasks down, environments across, one colour ramp for each kind of pair (Figures 4 to 6
 // and 8). lay_out_heatmap() decides sizes and labels, draw_heatmap() draws.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,7 @@ struct HeatmapStyle {
   bool margins = false;  // the mean of each task and environment
   double scale = 2;      // pixels per point
   double cell_pt = 0;    // 0: by the size of the matrix
+  int64_t columns = 0;   // panels in a row; 0: up to three, more in rows about as long as one another
 };
 
 constexpr char kTaskAxis[] = "task", kEnvAxis[] = "environment";
@@ -30,6 +32,8 @@ struct HeatmapLayout {
     Heading heading;  // where there are several panels
     Box matrix;
     std::vector<HeatMargin> margins;
+    bool first, last;                               // of its row
+    int env_labels_y, margin_labels_y, env_axis_y;  // tops of the labels and of the axis' name
   };
   double scale;
   int width, height, margin;
@@ -40,9 +44,8 @@ struct HeatmapLayout {
   std::vector<std::string> env_labels,
       task_labels;  // cut where they are too long, empty where there is no room for each
   std::vector<Panel> panels;
-  int margin_space, margin_cell;                  // from the matrix to its margins, and across each
-  int tree_space, tree_depth;                     // from the cells to a tree, and from its leaves to its root
-  int env_labels_y, margin_labels_y, env_axis_y;  // tops of the labels and of the axis' name
+  int margin_space, margin_cell;  // from the matrix to its margins, and across each
+  int tree_space, tree_depth;     // from the cells to a tree, and from its leaves to its root
   Box legend;
   int bar_height;
   int pixels(double pt) const;  // at least 1

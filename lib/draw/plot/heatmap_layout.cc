@@ -9,6 +9,7 @@
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/font.h"
 #include "draw/canvas/heading.h"
+#include "draw/plot/dendrogram.h"
 #include "draw/plot/heatmap.h"
 #include "draw/plot/heatmap_legend.h"
 #include "stats/cluster.h"
@@ -35,8 +36,10 @@ double automatic_cell_pt(size_t longer_side) {
 std::vector<std::string> labels(const std::vector<std::string>& names, int cell, int size, int longest,
                                 const Font& font) {
   const size_t step = size_t(std::max(1.0, std::ceil(1.15 * size / cell)));
-  std::vector<std::string> out(names.size());
-  for (size_t i = 0; i < names.size(); i += step) out[i] = font.fitted(names[i], size, longest);
+  std::vector<std::string> shown, out(names.size());
+  for (size_t i = 0; i < names.size(); i += step) shown.push_back(names[i]);
+  shown = font.fitted_apart(shown, size, longest);
+  for (size_t i = 0; i < shown.size(); ++i) out[i * step] = shown[i];
   return out;
 }
 
@@ -65,6 +68,13 @@ std::string caption_of(const HeatFigure& figure) {
   return out;
 }
 
+size_t columns_of(size_t panels, int64_t wished) {
+  if (wished > 0) return std::min(panels, size_t(wished));
+  // A page is about half as high again as it is wide, and a panel with its labels about as high.
+  const size_t rows = std::max<size_t>(1, size_t(std::lround(std::sqrt(double(panels) / 1.5))));
+  return (panels + rows - 1) / rows;
+}
+
 // Of a panel among several: what the legend says where there is but one.
 std::string panel_caption(const HeatTable& table) {
   std::string means;
@@ -91,7 +101,8 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   const auto px = [&](double pt) { return out.pixels(pt); };
   const HeatTable& first = figure.panels[0].table;
   const bool several = figure.panels.size() > 1;
-  const size_t tasks = first.tasks.size(), envs = first.envs.size(), across = envs * figure.panels.size();
+  const size_t columns = columns_of(figure.panels.size(), style.columns);
+  const size_t tasks = first.tasks.size(), envs = first.envs.size(), across = envs * columns;
   // Canvas refuses sizes far below this; the bound keeps the sums below from overflowing.
   if (std::max(tasks, across) > 100'000)
     fail(Exit::kUsage, "a side of ", std::max(tasks, across), " cells cannot be drawn");
@@ -125,41 +136,65 @@ HeatmapLayout lay_out_heatmap(const HeatFigure& figure, const HeatmapStyle& styl
   const int env_axis = font.width(kEnvAxis, axis_size), task_axis = font.width(kTaskAxis, axis_size);
   const int width = int(envs) * out.cell, height = int(tasks) * out.cell;
   const int label_width = std::max(widest(out.task_labels, out.label_size, font), margin_width);
-  int x = out.margin + std::max(axis + label_width + space, (env_axis - width + 1) / 2), right = 0, headings = 0;
+  const int left = out.margin + std::max(axis + label_width + space, (env_axis - width + 1) / 2);
+  int x = left, right = 0;
+  std::vector<int> headings((out.panels.size() + columns - 1) / columns);  // the highest of each row
   for (size_t i = 0; i < out.panels.size(); ++i) {
     HeatmapLayout::Panel& panel = out.panels[i];
+    panel.first = i % columns == 0;
+    panel.last = (i + 1) % columns == 0 || i + 1 == out.panels.size();
+    if (panel.first) x = left;
     panel.matrix = {x, 0, width, height};
-    right = std::max({out.right_of(panel), x + (width + env_axis + 1) / 2, several ? x + px(kNarrowestPanelPt) : 0});
+    const int end =
+        std::max({out.right_of(panel), x + (width + env_axis + 1) / 2, several ? x + px(kNarrowestPanelPt) : 0});
     const HeatPanel& given = figure.panels[i];
     panel.heading =
-        Heading(given.title, several ? panel_caption(given.table) : "", right - x, style.scale, font, kPanelTitlePt);
-    headings = std::max(headings, panel.heading.height());
-    x = right + px(kBetweenPanelsPt);
+        Heading(given.title, several ? panel_caption(given.table) : "", end - x, style.scale, font, kPanelTitlePt);
+    headings[i / columns] = std::max(headings[i / columns], panel.heading.height());
+    right = std::max(right, end);
+    x = end + px(kBetweenPanelsPt);
   }
-  if (figure.task_tree) right = std::max(right, out.right_of(out.panels.back()) + out.tree_space + out.tree_depth);
+  if (figure.task_tree)
+    right = std::max(right, out.right_of(out.panels[columns - 1]) + out.tree_space + out.tree_depth);
   out.legend = {right + px(22), 0, legend.width, legend.height};
   out.width = std::max(out.legend.right() + out.margin, px(kNarrowestPt));
 
   // From top to bottom.
   out.heading = Heading(style.title, caption_of(figure), out.width - 2 * out.margin, style.scale, font);
-  int y = out.margin + out.heading.height();
-  for (HeatmapLayout::Panel& panel : out.panels) panel.heading_y = y;
-  y += headings;
-  if (figure.env_tree) y += out.tree_depth + out.tree_space;
-  y += std::max(0, (task_axis - height + 1) / 2);
-  for (HeatmapLayout::Panel& panel : out.panels) panel.matrix.y = y;
-  out.legend.y = y;
-  out.env_labels_y = out.bottom_of(out.panels[0]) + space;
   const int env_depth = out.env_labels_up ? env_width : out.label_size,
             margin_depth = out.margin_labels_up ? margin_width : out.label_size;
-  out.margin_labels_y = y + height + space;
-  const int margin_bottom = style.margins ? out.margin_labels_y + margin_depth : 0;
-  out.env_axis_y = out.env_labels_y + env_depth + px(6);
-  // Beside a narrow matrix the axis' name reaches under the margins' names.
-  if (env_axis > width) out.env_axis_y = std::max(out.env_axis_y, margin_bottom + px(6));
-  // The names' letters reach below the digits' line by up to a third of their size.
-  const int lowest_text = std::max(out.env_axis_y + axis_size * 4 / 3, margin_bottom + out.label_size / 3);
-  out.height = std::max({lowest_text, out.legend.bottom(), y + (height + task_axis + 1) / 2}) + out.margin;
+  int y = out.margin + out.heading.height();
+  for (size_t i = 0; i < out.panels.size(); ++i) {
+    HeatmapLayout::Panel& panel = out.panels[i];
+    if (!panel.first) {
+      const HeatmapLayout::Panel& before = out.panels[i - 1];
+      panel.heading_y = before.heading_y;
+      panel.matrix.y = before.matrix.y;
+      panel.env_labels_y = before.env_labels_y;
+      panel.margin_labels_y = before.margin_labels_y;
+      panel.env_axis_y = before.env_axis_y;
+      continue;
+    }
+    panel.heading_y = y;
+    y += headings[i / columns];
+    if (figure.env_tree) y += out.tree_depth + out.tree_space;
+    y += std::max(0, (task_axis - height + 1) / 2);
+    panel.matrix.y = y;
+    panel.env_labels_y = out.bottom_of(panel) + space;
+    panel.margin_labels_y = y + height + space;
+    const int margin_bottom = style.margins ? panel.margin_labels_y + margin_depth : 0;
+    panel.env_axis_y = panel.env_labels_y + env_depth + px(6);
+    // Beside a narrow matrix the axis' name reaches under the margins' names.
+    if (env_axis > width) panel.env_axis_y = std::max(panel.env_axis_y, margin_bottom + px(6));
+    // The names' letters reach below the digits' line by up to a third of their size.
+    const int lowest_text = std::max(panel.env_axis_y + axis_size * 4 / 3, margin_bottom + out.label_size / 3);
+    const int tree_scale = figure.task_tree ? panel.matrix.bottom() + tree_scale_height(Pixels{style.scale}) : 0;
+    y = std::max({lowest_text, y + (height + task_axis + 1) / 2, tree_scale});
+    out.height = y + out.margin;
+    y += px(kBetweenPanelsPt);
+  }
+  out.legend.y = out.panels[0].matrix.y;
+  out.height = std::max(out.height, out.legend.bottom() + out.margin);
   return out;
 }
 

@@ -20,7 +20,7 @@ struct Format {
   char code[5];
 };
 constexpr Format kFormats[] = {
-    {".avi", cv::CAP_OPENCV_MJPEG, "MJPG"}, {".mp4", cv::CAP_FFMPEG, "mp4v"}, {".mkv", cv::CAP_FFMPEG, "mp4v"}};
+    {".avi", cv::CAP_OPENCV_MJPEG, "MJPG"}, {".mp4", cv::CAP_FFMPEG, "avc1"}, {".mkv", cv::CAP_FFMPEG, "mp4v"}};
 
 const Format& format_of(const std::string& path) {
   for (const Format& format : kFormats)
@@ -52,8 +52,8 @@ Video::Video(const std::string& path, double frames_per_second, int width, int h
   const auto& c = format.code;
   if (!writer_->video.open(writer_->file.path(), format.backend, cv::VideoWriter::fourcc(c[0], c[1], c[2], c[3]),
                            frames_per_second, {width, height}))
-    fail(Exit::kUsage, "cannot write the video '", path, "': this OpenCV cannot write ", format.extension,
-         ", but .gif and .avi it can");
+    fail(Exit::kUsage, "cannot write the video '", path, "': this OpenCV has no encoder for ", format.extension,
+         ", but .gif and .avi can be written");
 }
 
 Video::~Video() = default;

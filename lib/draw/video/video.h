@@ -7,9 +7,9 @@
 
 namespace synpo {
 
-// The end of the file's name chooses the format: .avi is Motion JPEG and always there, others (.mp4, .mkv) need
-// OpenCV's ffmpeg. A file beside `path` takes the name in finish(), as an Output's does; unfinished, it leaves
-// nothing.
+// The end of the file's name chooses the format: .avi is Motion JPEG and always there; .mp4, H.264 that browsers play,
+// and .mkv, MPEG-4, need OpenCV's ffmpeg. A file beside `path` takes the name in finish(), as an Output's does;
+// unfinished, it leaves nothing.
 class Video {
  public:
   // Throws kUsage for a format that cannot be written and for what is no file, kCantCreate where the file cannot be

@@ -73,6 +73,23 @@ table() {
     done
 }
 
+@test "--log-axis and --smooth: other pictures, and a caption that says it" {
+    for options in "" "--log-axis x" "--log-axis y" "--log-axis xy" "--smooth 3"; do
+        # shellcheck disable=SC2086
+        synpo-render curves -y policy $options run-1.log >a.png
+        is_png a.png
+        md5sum <a.png >>sums
+    done
+    [ "$(sort -u sums | wc -l)" -eq 5 ]
+    synpo-render curves --smooth 3 -o a.svg run-1.log
+    grep -qF '>each point the mean of the last 3 of its run<' a.svg
+    synpo-render curves -y learning_rate -o a.svg run-1.log
+    grep -qF '>learning rate<' a.svg
+    table '1 10 1 10 3 0 0' '2 20 2 10 3 0 0' >zero.log
+    fails 65 synpo-render curves --log-axis y zero.log
+    says "a logarithmic axis of success (%) needs values above 0"
+}
+
 @test "broken logs: 65, with file, line and column" {
     refused() {
         local text=$1
@@ -118,6 +135,8 @@ table() {
         fails 64 synpo-render curves "${arguments[@]}" run-1.log
     done <<'END'
 -x days
+--log-axis z
+--smooth 0
 --pairs none
 --band sem
 --panels 3

@@ -102,6 +102,23 @@ setup() { set_up e.jsonl a.ckpt two.tsv; }
     says "cannot create 'missing/a.avi': No such file or directory"
 }
 
+@test "--video: an .mp4 is H.264 with colours that every browser knows, or there is none and that is said" {
+    status=0
+    synpo-render episode --scale 0.5 --video a.mp4 e.jsonl 2>err || status=$?
+    if [ "$status" -ne 0 ]; then
+        [ "$status" -eq 64 ]
+        grep -qF "has no encoder for .mp4, but .gif and .avi can be written" err
+        skip "no encoder for H.264 here"
+    fi
+    [ ! -s err ]
+    python3 - <<'END'
+video = open('a.mp4', 'rb').read()
+assert video[4:8] == b'ftyp' and b'avc1' in video
+profile = video[video.index(b'avcC') + 5]
+assert profile in (66, 77, 100), profile  # of 4:2:0
+END
+}
+
 @test "--ansi: text in a file, colours on a terminal, and none with NO_COLOR" {
     synpo-render episode --ansi e.jsonl >text
     [ "$(wc -l <text)" -eq 18 ]

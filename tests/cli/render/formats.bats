@@ -71,7 +71,7 @@ END
 }
 
 @test "a name that ends in no format of ours is refused: 64, and names them" {
-    for name in a.jpg a.tar.gz a.ckpt dir.d/a.eps; do
+    for name in a.jpg a.tar.gz none.ckpt dir.d/a.eps; do
         fails 64 synpo-render map -o "$name"
         says "cannot tell the format of the picture '$name': expected a name that ends in .png, .pdf or .svg"
         [ ! -e "$name" ]
@@ -104,6 +104,21 @@ END
     synpo-render episode --scale 0.5 --rate 20 e.jsonl --format gif | cmp - a.gif
     synpo-render episode --scale 0.5 --rate 20 e.jsonl --video b.gif
     cmp a.gif b.gif
+}
+
+@test "labels as the paper writes them, panels in columns, margins with names" {
+    printf '%s\n' 'env task seen episodes successes' 'map1 O-R 1 10 9' 'map12 O-R 0 10 5' 'map2 O-R 1 10 5' |
+        tr ' ' '\t' >three.tsv
+    synpo-render heatmap --labels paper --margins -o a.svg three.tsv
+    for text in '(O, R)' env_0 env_1 env_2 'mean all' 'mean seen'; do
+        grep -qF ">$text<" a.svg || complain "no $text"
+    done
+    run ! grep -qF '>map1<' a.svg
+    synpo-render heatmap --columns 1 -o a.svg A=m.tsv B=m.tsv
+    synpo-render heatmap -o b.svg A=m.tsv B=m.tsv
+    run ! cmp -s a.svg b.svg
+    fails 64 synpo-render heatmap --ansi --columns 1 m.tsv
+    fails 64 synpo-render heatmap --labels theirs m.tsv
 }
 
 @test "a full disk: 74 in every format, and nothing is left" {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -36,6 +37,27 @@ TEST(Text, FittedKeepsBothEndsAndFits) {
   EXPECT_EQ(cut.back(), '2');
   // Whole characters only.
   EXPECT_EQ(font().fitted("\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9\u00e9", 17, 45).size() % 2, 1u);
+}
+
+TEST(Text, NamesThatAreShortenedStayDifferent) {
+  const std::string head = "a-rather-long-beginning-", tail = "-and-a-rather-long-end-of-all-names";
+  std::vector<std::string> names;
+  for (const char* middle : {"fridge", "microwave", "sink", "sink"}) names.push_back(head + middle + tail);
+  const std::vector<std::string> fitted = font().fitted_apart(names, 17, 150);
+  EXPECT_EQ(std::set<std::string>(fitted.begin(), fitted.end()).size(), 3u);
+  EXPECT_EQ(fitted[2], fitted[3]) << "names that are equal stay so";
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_LE(font().width(fitted[i], 17), 150) << fitted[i];
+    EXPECT_NE(fitted[i].find(names[i].substr(head.size(), 4)), std::string::npos) << fitted[i];
+  }
+  // Those that differ at an end are cut in the middle, and what fits is left alone.
+  EXPECT_EQ(font().fitted_apart({"map1", "map2"}, 17, 150), (std::vector<std::string>{"map1", "map2"}));
+  // What cannot be told apart otherwise has a number.
+  const std::string same(60, 'x');
+  const std::vector<std::string> numbered =
+      font().fitted_apart({same + "1" + same + "2" + same, same + "2" + same + "1" + same + "x"}, 17, 60);
+  EXPECT_NE(numbered[0], numbered[1]);
+  for (const std::string& name : numbered) EXPECT_LE(font().width(name, 17), 62) << name;
 }
 
 TEST(Text, WrappedLinesFit) {
@@ -176,6 +198,26 @@ TEST(Ticks, AreInsideEvenlySpacedAndNoMoreThanAskedFor) {
   EXPECT_THROW(nice_ticks(1, 1, 5), Error);
   EXPECT_THROW(nice_ticks(-1e300, 1e300, 5), Error);
   EXPECT_THROW(nice_ticks(1e9, 1e9 + 1e-3, 5), Error);
+}
+
+TEST(Ticks, OfALogarithmicAxisStandAtPowersOfTenAndBetween) {
+  const auto labels = [](double low, double high, int most) {
+    const Axis axis = {low, high, 1, "", true};
+    const Ticks ticks = axis.ticks(most);
+    std::vector<std::string> out;
+    for (const double at : ticks.at) out.push_back(axis.label(at, ticks));
+    return out;
+  };
+  EXPECT_EQ(labels(1, 100, 8), (Texts{"1", "2", "5", "10", "20", "50", "100"}));
+  EXPECT_EQ(labels(1, 100, 6), (Texts{"1", "10", "100"}));
+  EXPECT_EQ(labels(0.03, 30, 9), (Texts{"0.05", "0.1", "0.2", "0.5", "1", "2", "5", "10", "20"}));
+  EXPECT_EQ(labels(1e-4, 1e4, 4), (Texts{"0.001", "1", "1000"}));
+  const Axis axis = {0.1, 1000, 1, "", true};
+  EXPECT_DOUBLE_EQ(axis.place(0.1), 0);
+  EXPECT_NEAR(axis.place(10), 0.5, 1e-12);
+  EXPECT_NEAR(axis.place(1000), 1, 1e-12);
+  EXPECT_LT(axis.place(0), 0);
+  EXPECT_LT(axis.place(-5), 0);
 }
 
 TEST(Ticks, CountsAreWrittenInThousandsAndMillions) {

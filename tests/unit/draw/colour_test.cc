@@ -11,7 +11,7 @@ namespace synpo {
 namespace {
 
 TEST(Colour, DarkerIsBetterAndSeenDiffersFromUnseen) {
-  for (const char* name : {"safe", "purple-red", "blue-red"}) {
+  for (const char* name : {"safe", "purple-red", "blue-red", "figure8"}) {
     const Scheme& scheme = find_scheme(name);
     for (const Ramp& ramp : {scheme.seen, scheme.unseen, scheme.other})
       for (int percent = 1; percent <= 100; ++percent)

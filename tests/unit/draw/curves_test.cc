@@ -79,6 +79,50 @@ TEST(Curves, LinesAreWhereTheirValuesAreInTheirColours) {
     }
 }
 
+TEST(Curves, ThePapersMethodsLookAlikeInEveryPicture) {
+  const auto looks = [](const std::vector<std::string>& labels) {
+    std::vector<MethodRuns> methods;
+    for (const std::string& label : labels) methods.push_back({label, {{{{1, 2}, {3, 4}}}}});
+    const CurveSet set = average_runs(methods, {""}, Band::kSd);
+    std::vector<CurveLook> out;
+    for (size_t i = 0; i < labels.size(); ++i) out.push_back(curve_look(set, true, i, 0));
+    return out;
+  };
+  const auto all = looks({"SynPo", "MLP", "MTL", "ModuleNet", "SF"}), two = looks({"sf", "mlp"});
+  EXPECT_EQ(two[0].colour, all[4].colour);
+  EXPECT_EQ(two[0].marker, all[4].marker);
+  EXPECT_EQ(two[1].colour, all[1].colour);
+  // Others have what is left, in their order.
+  const auto mixed = looks({"ours", "SynPo", "theirs"});
+  EXPECT_EQ(mixed[1].colour, all[0].colour);
+  EXPECT_EQ(mixed[0].colour, all[1].colour);
+  EXPECT_EQ(mixed[2].colour, all[2].colour);
+  const auto seven = looks({"a", "b", "c", "d", "e", "f", "g"});
+  for (size_t i = 0; i < 7; ++i)
+    for (size_t j = 0; j < i; ++j) {
+      EXPECT_NE(seven[i].marker, seven[j].marker) << "told apart in grey";
+      EXPECT_FALSE(seven[i].colour == seven[j].colour);
+    }
+  EXPECT_EQ(looks({"SynPo"})[0].marker, Marker::kNone) << "one line needs none";
+}
+
+TEST(Curves, ALogarithmicAxisReachesFromPowerToPower) {
+  const CurveSet set = average_runs({{"", {{{{100, 1000, 10000}, {0.03, 5, 70}}}}}}, {""}, Band::kSd);
+  CurvesStyle style;
+  style.log_x = style.log_y = true;
+  const CurvesLayout layout = lay_out_curves(set, style, font());
+  const Box plot = layout.panels[0].plot;
+  EXPECT_NEAR(layout.axes.place(plot, 1000, 1).x, plot.x + plot.width / 2.0, 0.5);
+  EXPECT_NEAR(layout.axes.place(plot, 100, 0.01).x, plot.x, 0.5);
+  EXPECT_NEAR(layout.axes.place(plot, 100, 0.01).y, plot.bottom(), 0.5);
+  EXPECT_NEAR(layout.axes.place(plot, 100, 100).y, plot.y, 0.5);
+  EXPECT_EQ(draw_curves(set, style, font()).clipped(), 0);
+  const CurveSet none = average_runs({{"", {{{{1, 2}, {0, -3}}}}}}, {""}, Band::kSd);
+  style.y_title = "reward";
+  EXPECT_EQ(thrown([&] { lay_out_curves(none, style, font()); }),
+            "65 a logarithmic axis of reward needs values above 0");
+}
+
 TEST(Curves, PanelsAreChosenByTheNumberOfMethodsAndParts) {
   EXPECT_EQ(lay_out_curves(curve_set(1, 2), {}, font()).panels.size(), 1u);
   EXPECT_EQ(lay_out_curves(curve_set(2, 2), {}, font()).panels.size(), 2u);
@@ -133,6 +177,10 @@ TEST(Curves, CaptionSaysWhatTheBandIs) {
   EXPECT_EQ(caption(3, Band::kSd), "mean of 3 runs; band: standard deviation (divisor n \u2212 1)");
   EXPECT_EQ(caption(3, Band::kRange), "mean of 3 runs; band: lowest to highest run");
   EXPECT_EQ(caption(3, Band::kNone), "mean of 3 runs");
+  CurvesStyle smooth;
+  smooth.smooth = 5;
+  EXPECT_EQ(lay_out_curves(curve_set(1, 1), smooth, font()).heading.caption(),
+            (std::vector<std::string>{"each point the mean of the last 5 of its run"}));
 }
 
 TEST(Curves, ASizeWithoutRoomOrAMarkOutsideIsRefused) {

@@ -117,8 +117,37 @@ TEST(Panels, NothingIsClippedAndNothingMeets) {
         const int tree = side > 1 ? layout.tree_space + layout.tree_depth : 0;
         EXPECT_GT(layout.legend.x, layout.right_of(layout.panels.back()) + tree);
         EXPECT_GE(layout.panels[0].matrix.y - tree, layout.panels[0].heading_y + layout.panels[0].heading.height());
-        EXPECT_GE(layout.env_labels_y, layout.bottom_of(layout.panels[0]));
+        EXPECT_GE(layout.panels[0].env_labels_y, layout.bottom_of(layout.panels[0]));
       }
+}
+
+TEST(Panels, StandInRowsAndColumns) {
+  const auto layout = [](int panels, int64_t columns) {
+    const HeatFigure figure = arrange(std::vector<HeatPanel>(size_t(panels), {"A label", pool_matrix(square(6))}),
+                                      grid_task_names(), HeatOrder::kCluster, HeatOrder::kCluster);
+    HeatmapStyle style;
+    style.margins = true;
+    style.columns = columns;
+    EXPECT_EQ(draw_heatmap(figure, style, font()).clipped(), 0) << panels << " in " << columns;
+    return lay_out_heatmap(figure, style, font());
+  };
+  const auto in_first_row = [&](int panels, int64_t columns) {
+    const HeatmapLayout out = layout(panels, columns);
+    return std::count_if(out.panels.begin(), out.panels.end(),
+                         [&](const HeatmapLayout::Panel& panel) { return panel.matrix.y == out.panels[0].matrix.y; });
+  };
+  EXPECT_EQ(in_first_row(3, 0), 3);
+  EXPECT_EQ(in_first_row(4, 0), 2);
+  EXPECT_EQ(in_first_row(5, 0), 3);
+  EXPECT_EQ(in_first_row(5, 5), 5);
+  EXPECT_EQ(in_first_row(5, 1), 1);
+  EXPECT_EQ(in_first_row(2, 9), 2);
+  const HeatmapLayout five = layout(5, 2);
+  for (const size_t i : {0u, 2u}) {
+    EXPECT_EQ(five.panels[i].matrix.x, five.panels[i + 2].matrix.x);
+    EXPECT_GT(five.panels[i + 2].heading_y, five.panels[i].env_axis_y + five.pixels(kAxisPt));
+  }
+  EXPECT_TRUE(five.panels[4].first && five.panels[4].last);
 }
 
 TEST(Panels, MarginsAndTreesStandBesideTheirRows) {

@@ -46,5 +46,13 @@ TEST(MeanCurve, BandsStayWithinTheirBounds) {
   EXPECT_EQ(bound.mean, free.mean);
 }
 
+TEST(Curve, ARunningMeanIsOfTheLastPoints) {
+  const Curve curve = {{1, 2, 3, 4}, {8, 4, 0, 2}};
+  EXPECT_EQ(running_mean(curve, 1).y, curve.y);
+  EXPECT_EQ(running_mean(curve, 2).y, (std::vector<double>{8, 6, 2, 1}));
+  EXPECT_EQ(running_mean(curve, 100).y, (std::vector<double>{8, 6, 4, 3.5}));
+  EXPECT_EQ(running_mean(curve, 3).x, curve.x);
+}
+
 }  // namespace
 }  // namespace synpo

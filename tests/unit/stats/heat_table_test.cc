@@ -122,7 +122,7 @@ TEST(Margins, MeansOfTheLineAndOfEachOfItsKinds) {
           .table;
   const std::vector<HeatMargin> margins = margins_of(one);
   ASSERT_EQ(margins.size(), 3u);
-  EXPECT_EQ(margins[0].name, "mean");
+  EXPECT_EQ(margins[0].name, "mean all");
   EXPECT_DOUBLE_EQ(margins[0].tasks[0].mean(), 0.5);
   EXPECT_DOUBLE_EQ(margins[0].envs[0].mean(), 0.6);
   EXPECT_EQ(margins[1].name, "mean seen");
