@@ -207,7 +207,7 @@ $(B)/builtin_maps.o $(B)/version.o: %.o: %.cc
 check test: all $(B)/unit-tests
 	@scripts/check $(B)
 
-include tests/fuzz/fuzz.mk
+include tests/fuzz/fuzz.mk tests/checks.mk
 
 lint:
 	scripts/lint

@@ -8,10 +8,12 @@
 #include <ctime>
 #include <exception>
 #include <mutex>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include "base/clock.h"
+#include "base/error.h"
 
 namespace synpo {
 namespace {
@@ -115,7 +117,13 @@ Parallel::Parallel(int threads) : pool_(std::make_unique<Pool>()) {
     cpu_set_t set;
     threads = sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
   }
-  for (int i = 1; i < threads; ++i) pool_->workers.emplace_back([pool = pool_.get(), i] { pool->loop(i); });
+  for (int i = 1; i < threads; ++i) {
+    try {
+      pool_->workers.emplace_back([pool = pool_.get(), i] { pool->loop(i); });
+    } catch (const std::system_error& error) {
+      fail(Exit::kUnavailable, "cannot start thread ", i + 1, " of ", threads, ": ", error.code().message());
+    }
+  }
 }
 
 Parallel::~Parallel() = default;

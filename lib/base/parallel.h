@@ -8,7 +8,7 @@ namespace synpo {
 
 class Parallel {
  public:
-  // 0 threads means as many as this process may use.
+  // 0 threads means as many as this process may use. Throws kUnavailable where the system does not allow so many.
   explicit Parallel(int threads = 0);
   ~Parallel();
   int threads() const;

@@ -85,6 +85,9 @@ RunOutputs::RunOutputs(const LongRun& settings, const std::vector<std::string>& 
                                                               settings.strip ? Paths{} : Paths{settings.resume}),
       log_(settings.log, !settings.resume.empty(), columns) {
   check_save(save_, over_);
+  if (save_.empty()) return;
+  const Destination place = Destination::find(save_);
+  if (place.kind == Destination::Kind::kFile) claim_.emplace(place);
 }
 
 void RunOutputs::save(const Checkpoint& checkpoint) const {

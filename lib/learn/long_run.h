@@ -1,12 +1,14 @@
 // The tools that learn for hours have this in common: where they write, after which updates, and the loop itself.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/files/io.h"
+#include "base/files/unfinished.h"
 #include "engine/device.h"
 #include "format/checkpoint.h"
 #include "format/run_log.h"
@@ -80,7 +82,8 @@ class LongWork {
 class RunOutputs {
  public:
   // The place of the checkpoint that the run goes on from may be taken by what holds as much. Throws kUsage where a
-  // checkpoint to go on from has no file to be replaced in, and as Output and TsvLog do.
+  // checkpoint to go on from has no file to be replaced in, kCantCreate where another run saves to that file, and as
+  // Output and TsvLog do.
   RunOutputs(const LongRun& settings, const std::vector<std::string>& columns);
 
   TsvLog& log() { return log_; }
@@ -91,6 +94,7 @@ class RunOutputs {
 
  private:
   std::string save_;
+  std::optional<Claim> claim_;     // on save_, where that is a file
   std::vector<std::string> over_;  // what save_ may be one file with
   Output output_;
   TsvLog log_;

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kPart[] = ".part";
+constexpr char kPart[] = ".part", kLock[] = ".lock";
 constexpr char kLetters[] = "abcdefghijklmnopqrstuvwxyz234567";
 constexpr size_t kMark = 4, kRandom = 8, kLongestName = 255;
 
@@ -75,6 +75,18 @@ void clear_abandoned(const Pattern& pattern, mode_t type) {
     std::error_code ignored;
     fs::remove_all(path, ignored);
   }
+}
+
+// Whether another process holds what fits; `own` is not looked at.
+bool held_by_another(const Pattern& pattern, const std::string& own) {
+  std::error_code error;
+  for (fs::directory_iterator entry(pattern.folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    if (!pattern.fits(name) || name == own) continue;
+    const Descriptor other(open(entry->path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+    if (other && flock(other.get(), LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return true;
+  }
+  return false;
 }
 
 // Makes a temporary with `make(path)`, which opens it or sets errno, and holds it. `path` and `leftover` are of the one
@@ -169,6 +181,11 @@ void UnfinishedFile::publish() {
   leftover_.reset();
   if (!renamed) fail(Exit::kIo, "cannot rename to '", destination_.path, "': ", kept);
   if (!sync_folder(split_path(target).folder) || !file_.close()) failed("write");
+}
+
+Claim::Claim(const Destination& destination) : mark_(destination, kLock) {
+  if (held_by_another(Pattern(destination.target, kLock), split_path(mark_.path()).name))
+    destination.cannot_create("another process saves to it");
 }
 
 UnfinishedFolder::UnfinishedFolder(const std::string& path, const std::string& target) : path_(path), target_(target) {

@@ -36,6 +36,17 @@ class UnfinishedFile {
   Descriptor file_;
 };
 
+// The right to write a file again and again: of this machine's processes one at a time has it, and whoever dies loses
+// it. It is an empty file beside the other, named as a temporary and with ".lock" after that.
+class Claim {
+ public:
+  // Throws kCantCreate where another process has it. Of two that ask at the same moment perhaps neither gets it.
+  explicit Claim(const Destination& destination);
+
+ private:
+  UnfinishedFile mark_;
+};
+
 class UnfinishedFolder {
  public:
   // `target` is a path without links, `path` the same as the user gave it. Throws kCantCreate.

@@ -1,7 +1,10 @@
 #include "base/files/unfinished.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <filesystem>
 #include <string>
 
@@ -77,6 +80,33 @@ TEST(UnfinishedFile, IsKeptWhereItCannotHaveItsName) {
   fs::remove(target);
   { const UnfinishedFile same(Destination::find(target)); }
   EXPECT_EQ(contents(path), "whole");
+}
+
+TEST(Claim, IsOneProcessesUntilThatDies) {
+  const TemporaryFolder folder;
+  const Destination target = Destination::find(folder.file("x"));
+  int told[2];
+  ASSERT_EQ(pipe(told), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const Claim claim(target);
+    [[maybe_unused]] const bool ready = write_all(told[1], "!");
+    pause();
+    _exit(0);
+  }
+  char byte;
+  ASSERT_EQ(read(told[0], &byte, 1), 1);
+  const std::string refused = "73 cannot create '" + target.path + "': another process saves to it";
+  EXPECT_EQ(thrown([&] { const Claim claim(target); }), refused);
+  EXPECT_EQ(folder.files(), 1u);
+  { const Claim other(Destination::find(folder.file("y"))); }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+  EXPECT_EQ(folder.files(), 1u);
+  const Claim claim(target);
+  EXPECT_EQ(folder.files(), 1u);
+  EXPECT_EQ(thrown([&] { const Claim second(target); }), refused);
 }
 
 }  // namespace
