@@ -15,11 +15,24 @@
 #include "base/files/file_uses.h"
 #include "base/files/unfinished.h"
 #include "base/signals.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
 constexpr size_t kBuffer = 1 << 16;
+
+// Names from files are shown on a terminal, which is not to act on them: what it would is written as \xNN. The colours
+// of the programs themselves begin with an escape, which no reader takes in.
+std::string fit_for_terminal(std::string_view text) {
+  std::string out;
+  for (size_t i = 0; i < text.size();) {
+    const size_t shown = text[i] == '\n' || text[i] == '\t' || text[i] == '\033' ? 1 : printable_length(text, i);
+    out += shown > 0 ? std::string(text.substr(i, shown)) : printable(text.substr(i, 1));
+    i += std::max<size_t>(1, shown);
+  }
+  return out;
 }
+}  // namespace
 
 Input::Input(int fd, std::string name) : fd_(fd), name_(std::move(name)), buffer_(kBuffer) {}
 
@@ -107,6 +120,7 @@ struct Output::Place {
   OutputUse use;
   Descriptor opened = {};
   std::unique_ptr<UnfinishedFile> file = {};
+  bool is_terminal = false;  // that text goes to
 };
 
 Output::Output(const std::string& path, Kind kind, bool force, const std::vector<std::string>& over)
@@ -130,6 +144,7 @@ Output::Output(const std::string& path, Kind kind, bool force, const std::vector
     if (!place_->opened) destination.cannot_create(std::strerror(errno));
     fd_ = place_->opened.get();
   }
+  place_->is_terminal = kind != Kind::kBinary && isatty(fd_);
   if (kind == Kind::kBinary && !force && isatty(fd_))
     fail(Exit::kUsage, kTerminalOutput, is_stdout() ? "standard output" : "'" + path + "'",
          " is a terminal and the output is binary");
@@ -145,7 +160,10 @@ void Output::failed(const char* what) {
 }
 
 void Output::write(std::string_view bytes) {
-  buffer_.append(bytes);
+  if (place_->is_terminal)
+    buffer_ += fit_for_terminal(bytes);
+  else
+    buffer_.append(bytes);
   if (buffer_.size() >= kBuffer) flush();
 }
 
