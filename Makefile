@@ -14,11 +14,13 @@ ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -
                -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4
 CAIRO_CFLAGS  := -isystem /usr/include/cairo -isystem /usr/include/freetype2 -isystem /usr/include/harfbuzz
-DRAW_LIBS     = -lopencv_dnn -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core \
-                -lcairo -lharfbuzz -lfreetype -lz -lgif
+DRAW_LIBS     = $(if $(filter no,$(DRAW)),,$(ALL_DRAW_LIBS))
+ALL_DRAW_LIBS := -lopencv_dnn -lopencv_videoio -lopencv_imgcodecs -lopencv_imgproc -lopencv_core \
+                 -lcairo -lharfbuzz -lfreetype -lz -lgif
 
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
-# DRAW=no leaves out pictures, and with them OpenCV, cairo and giflib.
+# DRAW=no leaves out pictures, and with them OpenCV, cairo and giflib; synpo-render
+# then says that they are missing.
 LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' \
             $(if $(filter no,$(DRAW)),-not '(' -path 'lib/draw/*/*' -not -path 'lib/draw/terminal/*' ')'))
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
@@ -31,7 +33,7 @@ TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GC
 KERNEL_OBJ := $(TARGETS:%=$(B)/lib/kernel/target_%.o)
 LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o $(B)/version.o
 TOOL_SRC := $(shell find tools -name '*.cc')
-TEST_SRC := $(shell find tests/unit -name '*.cc')
+TEST_SRC := $(shell find tests/unit -name '*.cc' $(if $(filter no,$(DRAW)),-not -path 'tests/unit/draw/*'))
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
 MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
 
@@ -116,7 +118,8 @@ $(B)/libsynpo.a: $(LIB_OBJ)
 
 # Every tool is one file of its name; those of several commands have a folder of them.
 define TOOL_RULE
-$(B)/$(1): $(patsubst %.cc,$(B)/%.o,tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc)) $(B)/libsynpo.a
+$(B)/$(1): $(patsubst %.cc,$(B)/%.o,$(if $(filter synpo-render-no,$(1)-$(DRAW)),tools/without_drawing/$(1).cc, \
+           tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc))) $(B)/libsynpo.a
 	$$(call say,LINK,$$@)
 	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(DRAW_LIBS))
 endef
@@ -150,7 +153,7 @@ $(B)/gtest.o:
 
 $(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
 	$(call say,LINK,$@)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) -lgtest -lgtest_main $(DRAW_LIBS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) $(or $(GTEST),-lgtest -lgtest_main) $(DRAW_LIBS)
 
 $(TEST_OBJ): INCLUDES += -Itests/unit
 
