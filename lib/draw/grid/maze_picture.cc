@@ -72,11 +72,13 @@ Canvas draw_maps(const std::vector<Maze>& mazes, const MapStyle& style, const Fo
 
   Canvas canvas(width, top + rows * (side + below) + (rows - 1) * px(8) + margin - px(4), font, style.scale);
   heading.draw(canvas, margin, margin);
+  std::vector<std::string> names;
+  for (const Maze& maze : mazes) names.push_back(maze.name);
+  names = font.fitted_apart(names, label, side + between - px(4));
   for (int i = 0; i < count; ++i) {
     const int x = margin + i % columns * (side + between), y = top + i / columns * (side + below + px(8));
     draw_maze(canvas, x, y, cell, mazes[i]);
-    canvas.text(x + side / 2, y + side + px(6), font.fitted(mazes[i].name, label, side + between - px(4)), label, kInk,
-                Across::kCentre);
+    canvas.text(x + side / 2, y + side + px(6), names[size_t(i)], label, kInk, Across::kCentre);
   }
   return canvas;
 }

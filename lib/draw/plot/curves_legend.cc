@@ -17,7 +17,7 @@ CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double s
   CurvesLegend legend;
   legend.band_opacity = band_opacity(set);
   const auto add = [&](const std::string& name, const CurveLook& look, bool band) {
-    legend.entries.push_back({font.fitted(name, px(kTextPt), width - px(kSamplePt + kSpacePt)), look, band, 0, 0});
+    legend.entries.push_back({name, look, band, 0, 0});
   };
   const auto banded = [&](const CurveSet::Method& method) {
     return std::any_of(method.parts.begin(), method.parts.end(),
@@ -39,6 +39,11 @@ CurvesLegend lay_out_curves_legend(const CurveSet& set, bool one_panel, double s
   if (set.methods.size() > 1 && styles)
     for (size_t part = 0; part < 2; ++part)
       add(set.parts[part] + " pairs", {kSoftInk, curve_look(set, true, 0, part).dashed, Marker::kNone}, false);
+
+  std::vector<std::string> names;
+  for (const CurvesLegend::Entry& entry : legend.entries) names.push_back(entry.name);
+  names = font.fitted_apart(names, px(kTextPt), width - px(kSamplePt + kSpacePt));
+  for (size_t i = 0; i < names.size(); ++i) legend.entries[i].name = names[i];
 
   int x = 0, y = 0;
   for (CurvesLegend::Entry& entry : legend.entries) {
