@@ -328,6 +328,15 @@ double step_multiply_adds() {
   return 3.0 * (policy.encoder().multiply_adds() + recognisers + shape.feature * shape.basis) - first_block;
 }
 
+// The same in the kitchens, whose first convolution multiplies five of its taps and has no gradient of its input.
+double kitchen_multiply_adds() {
+  const std::unique_ptr<World> world = open_world("kitchen");
+  const PolicyShape shape = recipe(kDefaultRecipe, "synpo", Sight::kFeatures).shape(*world);
+  const SynPo<float> policy(shape);
+  const double first = 5.0 * shape.observation.view * shape.views.channels;
+  return 3.0 * (policy.encoder().multiply_adds() + shape.feature * shape.basis) - first;
+}
+
 // The work of SynPo's head on the states of some pairs, for any number of actions.
 class Head {
  public:
@@ -426,6 +435,8 @@ int rows() {
   const double step = network_rate(true, 512, threads), product = product_rate(threads), drawn = draw_rate(threads);
   row("step_gflops", 2e-9 * step * step_multiply_adds(), "GFLOP/s");
   row("step_of_product", step * step_multiply_adds() / product, "ratio");
+  const double kitchen = network_rate(true, 512, threads, {.world = "kitchen"});
+  row("kitchen_step_of_product", kitchen * kitchen_multiply_adds() / product, "ratio");
   row("draw_states_per_s", drawn, "states/s");
   row("draw_of_step", step / drawn, "ratio");
   method_rows(threads);
