@@ -6,7 +6,8 @@ setup() { set_up a.ckpt; }
 
 # From the build under test, as it is.
 make_there() {
-    make -C "$ROOT" B="$(dirname "$(command -v synpo-train)")" -o all PREFIX=/opt/synpo DESTDIR="$PWD/to" "$@"
+    make -C "$ROOT" B="$(dirname "$(command -v synpo-train)")" -o all PREFIX=/opt/synpo \
+        DESTDIR="$PWD/to" "$@"
 }
 
 @test "a program of ten lines is built with pkg-config against what was installed, and counts as synpo-eval does" {
@@ -69,4 +70,25 @@ env.close()' >got
     find to -not -type d | sort >left
     printf '%s\n' to/opt/synpo/bin-note to/opt/synpo/include/other/x.h to/opt/synpo/lib/synpo/mine | cmp - left
     [ ! -e to/opt/synpo/include/synpo ] && [ ! -e to/opt/synpo/share/synpo ]
+}
+
+@test "the Debian package is built of what make deps installs" {
+    sed -n '/^PACKAGES/,/[^\\]$/p' "$ROOT/Makefile" | tr -s ' \\' '\n' | grep -- '-dev$' | grep -v gtest >needed
+    [ "$(wc -l <needed)" -ge 4 ]
+    sed -n '/^Build-Depends/,/^[A-Z]/p' "$ROOT/packaging/debian/control" | tr -s ', ' '\n' >named
+    while read -r package; do grep -qx -- "$package" named || complain "Build-Depends lacks $package"; done <needed
+}
+
+@test "every installed file has a Debian package, and every page is in one" {
+    make_there PREFIX=/usr LIBDIR=lib/x PYTHONDIR=lib/python3/dist-packages install
+    cat "$ROOT"/packaging/debian/*.install >patterns
+    (cd to && find . -type f -not -path './usr/lib/synpo/*' | cut -c 3-) >files
+    while read -r file; do
+        matched=
+        while read -r pattern; do
+            # shellcheck disable=SC2053
+            [[ $file != $pattern && $file != $pattern/* ]] || matched=yes
+        done <patterns
+        [ -n "$matched" ] || complain "$file is in no package"
+    done <files
 }
