@@ -13,6 +13,7 @@
 #include "base/error.h"
 #include "base/files/io.h"
 #include "base/random.h"
+#include "base/text.h"
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/font.h"
 #include "draw/episode/agent_view.h"
@@ -113,7 +114,9 @@ int body(int argc, char** argv) {
 
 int find_env(const WorldFace& face, const std::string& name, const char* world) {
   const int found = face.world().env_index(name);
-  if (found < 0) fail(Exit::kUsage, "no ", face.kind().environment, " ", quoted(name), " in ", world);
+  if (found < 0)
+    fail(Exit::kUsage, "no ", face.kind().environment, " ", quoted(name), " in ", world,
+         did_you_mean(name, face.world().env_names()));
   return found;
 }
 
@@ -121,7 +124,8 @@ int find_task(const WorldFace& face, const std::string& name) {
   const int found = face.world().task_index(name);
   const char* hint = face.kind().task_hint;
   if (found < 0)
-    fail(Exit::kUsage, "no task ", quoted(name), hint ? ": expected " : " in this world", hint ? hint : "");
+    fail(Exit::kUsage, "no task ", quoted(name), hint ? ": expected " : " in this world", hint ? hint : "",
+         did_you_mean(name, face.world().task_names()));
   return found;
 }
 

@@ -1,9 +1,41 @@
 #include "base/text.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
+#include <utility>
+
+#include "base/error.h"
 
 namespace synpo {
+namespace {
+
+constexpr size_t kFar = 1000;
+
+// Letters that were mistaken, missing, too many, or swapped with their neighbours: the optimal string alignment
+// distance, where a digit is never mistaken and a letter is the same in upper case.
+size_t slips_between(std::string_view a, std::string_view b) {
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const auto same = [](char x, char y) { return std::tolower(uint8_t(x)) == std::tolower(uint8_t(y)); };
+  const auto cost = [&](char c) { return digit(c) ? kFar : size_t{1}; };
+  const auto wrong = [&](char x, char y) { return same(x, y) ? 0 : std::max(cost(x), cost(y)); };
+  std::vector<size_t> before, above(b.size() + 1), row(b.size() + 1);
+  for (size_t j = 1; j <= b.size(); ++j) above[j] = above[j - 1] + cost(b[j - 1]);
+  for (size_t i = 1; i <= a.size(); ++i) {
+    row[0] = above[0] + cost(a[i - 1]);
+    for (size_t j = 1; j <= b.size(); ++j) {
+      row[j] =
+          std::min({above[j] + cost(a[i - 1]), row[j - 1] + cost(b[j - 1]), above[j - 1] + wrong(a[i - 1], b[j - 1])});
+      if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
+        row[j] = std::min(row[j], before[j - 2] + std::max(cost(a[i - 1]), cost(a[i - 2])));
+    }
+    before = above;
+    std::swap(above, row);
+  }
+  return above[b.size()];
+}
+
+}  // namespace
 
 size_t utf8_length(std::string_view text, size_t at) {
   const auto byte = [&](size_t i) { return i < text.size() ? uint8_t(text[i]) : uint8_t{0}; };
@@ -98,6 +130,24 @@ std::string alternatives(const std::vector<std::string>& words) {
   std::string list;
   for (size_t i = 0; i < words.size(); ++i) list += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
   return list;
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names) {
+  constexpr size_t kLongest = 100, kMostNames = 10'000, kMostNamed = 3;
+  size_t least = kFar;
+  std::vector<std::string> nearest;
+  if (word.size() > kLongest || names.size() > kMostNames) return "";
+  for (const std::string& name : names) {
+    if (name.size() > kLongest) continue;
+    const bool cut = word.size() > 1 && name.starts_with(word);
+    const size_t slips = cut ? 1 : slips_between(word, name);
+    if (3 * slips > std::max(word.size(), name.size()) || slips > least) continue;
+    if (slips < least) nearest.clear();
+    least = slips;
+    nearest.push_back(quoted(name));
+  }
+  if (nearest.empty() || nearest.size() > kMostNamed) return "";
+  return " (did you mean " + alternatives(nearest) + "?)";
 }
 
 }  // namespace synpo

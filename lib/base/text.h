@@ -45,6 +45,11 @@ std::string shortest(double value);
 // "a, b or c", as a sentence names choices; "" for an empty list.
 std::string alternatives(const std::vector<std::string>& words);
 
+// " (did you mean 'count'?)", with those of the names that `word` may be a slip of the pen for: letters that are wrong,
+// missing, too many or swapped with their neighbours, one for every three letters of the word; or its end is missing.
+// Digits are never a slip. "" where there is no such name, or where more than three are as near as one another.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
+
 // Reads the whole text as a number; false, and `value` is anything, where it is not a number or does not fit.
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {

@@ -131,9 +131,9 @@ std::string Training::report(const Report& report) {
                                percent(row.evaluation->unseen_success), " unseen"));
   }
   report.log.write(run_log_values(row));
-  return short_count(row.states_per_s) + " states/s, loss " + std::to_string(row.loss).substr(0, 5) + ", right: move " +
-         percent(row.right[0]) + " pick " + percent(row.right[1]) + " walk on " + percent(row.right[2]) + " start " +
-         percent(row.right[3]);
+  return concat("loss ", std::to_string(row.loss).substr(0, 5), ", ", short_count(row.states_per_s),
+                " states/s, right: move ", percent(row.right[0]), ", pick ", percent(row.right[1]), ", walk on ",
+                percent(row.right[2]), ", start ", percent(row.right[3]));
 }
 
 }  // namespace synpo

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "base/files/io.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -110,12 +111,13 @@ std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow
   std::vector<EnvTask> pairs;
   for (const PairRow& row : rows) {
     const EnvTask pair = {world.env_index(row.env), world.task_index(row.task)};
-    const auto unknown = [&](const char* what, const std::string& name, const std::string& first) {
+    const auto unknown = [&](const char* what, const std::string& name, const std::vector<std::string>& known) {
       fail(Exit::kData, file, row.line > 0 ? concat(": line ", row.line) : "", ": found the ", what, " ", quoted(name),
-           ", expected one of the world ", quoted(world.name()), ", such as ", quoted(first));
+           ", expected one of the world ", quoted(world.name()), ", such as ", quoted(known.front()),
+           did_you_mean(name, known));
     };
-    if (pair.env < 0) unknown("env", row.env, world.environments().front().name);
-    if (pair.task < 0) unknown("task", row.task, world.task_names().front());
+    if (pair.env < 0) unknown("env", row.env, world.env_names());
+    if (pair.task < 0) unknown("task", row.task, world.task_names());
     if (row.seen || !seen_only) pairs.push_back(pair);
   }
   return pairs;

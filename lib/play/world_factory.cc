@@ -95,7 +95,8 @@ const std::vector<std::string>& world_names() {
 std::unique_ptr<World> open_world(const std::string& name) {
   for (const KindOfWorld& world : kWorlds)
     if (name == world.name || (world.has_folders && name.starts_with(concat(world.name, ":")))) return world.open(name);
-  fail(Exit::kUsage, "unknown world ", quoted(name), ", expected ", alternatives(world_names()));
+  fail(Exit::kUsage, "unknown world ", quoted(name), ", expected ", alternatives(world_names()),
+       did_you_mean(name, world_names()));
 }
 
 std::unique_ptr<World> restore_world(const std::string& name, const std::vector<Environment>& environments,

@@ -57,6 +57,12 @@ bool World::at_choice(EnvTask pair, const WorldState& state) const {
   return false;
 }
 
+std::vector<std::string> World::env_names() const {
+  std::vector<std::string> names;
+  for (const Environment& env : environments()) names.push_back(env.name);
+  return names;
+}
+
 int World::env_index(const std::string& name) const {
   const auto found = env_numbers_.find(name);
   return found == env_numbers_.end() ? -1 : found->second;

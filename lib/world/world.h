@@ -119,6 +119,7 @@ class World {
   int envs() const { return int(environments().size()); }
   int task_count() const { return int(task_names().size()); }
   int actions() const { return int(action_names().size()); }
+  std::vector<std::string> env_names() const;
   // Position of a name, or -1.
   int env_index(const std::string& name) const;
   int task_index(const std::string& name) const;

@@ -47,9 +47,7 @@ void take_names(const std::string& world, const std::string& envs, const std::st
     return;
   }
   const std::unique_ptr<World> opened = open_world(world);
-  std::vector<std::string> env_names;
-  for (const Environment& env : opened->environments()) env_names.push_back(env.name);
-  plan.envs = choose_names("--envs", envs, env_names);
+  plan.envs = choose_names("--envs", envs, opened->env_names());
   plan.tasks = choose_names("--tasks", tasks, opened->task_names());
 }
 

@@ -47,9 +47,7 @@ int features(int argc, char** argv) {
 
   catch_stop_signals();
   const KitchenSet world;
-  std::vector<std::string> names;
-  for (const Environment& env : world.environments()) names.push_back(env.name);
-  const std::vector<std::string> chosen = choose_names("--envs", envs, names);
+  const std::vector<std::string> chosen = choose_names("--envs", envs, world.env_names());
   FeatureNet net(net_path, kViewFeatures, int(threads));
   PictureFeatures pictures;
   pictures.name = net.name();

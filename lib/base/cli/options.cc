@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "base/cli/screen.h"
 #include "base/cli/version.h"
 #include "base/error.h"
 #include "base/files/descriptor.h"
@@ -30,6 +31,21 @@ namespace {
 [[noreturn]] void print_and_exit(const std::string& text) {
   write_file("-", text, Output::Kind::kText);
   std::exit(0);
+}
+
+// Of --help: as wide as the terminal, but no wider than is easily read; and what is no terminal.
+size_t help_width() {
+  constexpr int kNarrowest = 40, kWidest = 120, kElsewhere = 80;
+  const int columns = screen_size(1).columns;
+  return size_t(columns > 0 ? std::clamp(columns, kNarrowest, kWidest) : kElsewhere);
+}
+
+// The name in America's spelling.
+std::string american(std::string name) {
+  constexpr const char* kSpellings[][2] = {{"colour", "color"}, {"normalise", "normalize"}};
+  for (const auto& [here, there] : kSpellings)
+    if (const size_t at = name.find(here); at != std::string::npos) name.replace(at, std::strlen(here), there);
+  return name;
 }
 
 // All tools say this.
@@ -153,13 +169,13 @@ Options& Options::real(char letter, const char* name, const char* arg, const std
 
 Options& Options::choice(char letter, const char* name, const char* arg, const std::string& help, std::string& value,
                          std::vector<std::string> words) {
-  return call(letter, name, arg, help,
-              [&value, words = std::move(words)](const std::string& given) {
-                if (std::find(words.begin(), words.end(), given) == words.end())
-                  throw std::invalid_argument("expected " + alternatives(words));
-                value = given;
-              })
-      .shown_as(value);
+  call(letter, name, arg, help, [&value, words](const std::string& given) {
+    if (std::find(words.begin(), words.end(), given) == words.end())
+      throw std::invalid_argument("expected " + alternatives(words));
+    value = given;
+  }).shown_as(value);
+  entries_.back().words = std::move(words);
+  return *this;
 }
 
 Options& Options::text(char letter, const char* name, const char* arg, const std::string& help, std::string& value) {
@@ -168,19 +184,36 @@ Options& Options::text(char letter, const char* name, const char* arg, const std
 
 Options& Options::section(const char* title) { return add(Kind::kHeading, 0, title, "", "", nullptr); }
 
-std::string Options::usage() const {
-  std::string out = "usage: " + tool_ + (synopsis_.empty() ? "" : " ") + synopsis_ + "\n" + purpose_ + "\n\n";
-  constexpr size_t kColumn = 30;
+Options& Options::command(const char* name, const char* purpose) {
+  return add(Kind::kCommand, 0, name, "", purpose, nullptr);
+}
+
+std::string Options::usage(size_t width) const {
+  constexpr size_t kColumn = 30, kCommandColumn = 14, kNarrow = 70, kNarrowColumn = 8;
+  const std::string usage = "usage: ";
+  std::string out =
+      usage + wrapped(tool_ + (synopsis_.empty() ? "" : " ") + synopsis_, usage.size(), usage.size(), width);
+  out += "\n" + wrapped(purpose_, 0, 0, width) + "\n";
+  if (!entries_.empty() && entries_[0].kind != Kind::kHeading) out += "\n";
+  const auto add_row = [&](const std::string& left, size_t column, const std::string& help) {
+    const bool fits = left.size() + 2 <= column && width >= kNarrow;
+    const size_t indent = width >= kNarrow ? column : kNarrowColumn;
+    out += left + (fits ? std::string(column - left.size(), ' ') : "\n" + std::string(indent, ' '));
+    out += wrapped(help, indent, indent, width) + "\n";
+  };
   for (const Entry& entry : entries_) {
     if (entry.kind == Kind::kHeading) {
-      out += "\n" + entry.name + ":\n";
+      out += "\n" + wrapped(entry.name + ":", 0, 0, width) + "\n";
+      continue;
+    }
+    if (entry.kind == Kind::kCommand) {
+      add_row("  " + entry.name, kCommandColumn, entry.help);
       continue;
     }
     std::string left = (entry.letter ? std::string("  -") + entry.letter + ", --" : "      --") + entry.name;
     if (entry.kind == Kind::kToggle) left += ", --no-" + entry.name;
     if (entry.kind == Kind::kArgument) left += " " + entry.arg;
-    left += left.size() + 2 > kColumn ? "\n" + std::string(kColumn, ' ') : std::string(kColumn - left.size(), ' ');
-    out += left + entry.help + (entry.shown_default.empty() ? "" : " [" + entry.shown_default + "]") + "\n";
+    add_row(left, kColumn, entry.help + (entry.shown_default.empty() ? "" : " [" + entry.shown_default + "]"));
   }
   return out;
 }
@@ -188,26 +221,29 @@ std::string Options::usage() const {
 void Options::wrong(const std::string& message) const { fail(Exit::kUsage, message, "; try '", tool_, " --help'"); }
 
 Options::Found Options::find(const std::string& name) {
-  std::vector<std::string> candidates;
+  std::vector<std::string> candidates, all;
   Found found{};
   for (Entry& entry : entries_) {
-    if (entry.kind == Kind::kHeading) continue;
+    if (entry.kind == Kind::kHeading || entry.kind == Kind::kCommand) continue;
     for (const bool off : {false, true}) {
       if (off && entry.kind != Kind::kToggle) continue;
-      const std::string full = (off ? "no-" : "") + entry.name;
-      if (full == name) return {&entry, off};
-      if (!full.starts_with(name)) continue;
+      const std::string full = (off ? "no-" : "") + entry.name, abroad = american(full);
+      if (full == name || abroad == name) return {&entry, off};
+      all.push_back("--" + full);
+      if (!full.starts_with(name) && !abroad.starts_with(name)) continue;
       candidates.push_back("--" + full);
       found = {&entry, off};
     }
   }
-  if (candidates.empty()) wrong("unknown option " + quoted("--" + name));
-  if (candidates.size() > 1) wrong("ambiguous option " + quoted("--" + name) + ": " + alternatives(candidates));
+  const std::string given = "--" + name;
+  if (candidates.empty()) wrong("unknown option " + quoted(given) + did_you_mean(given, all));
+  if (candidates.size() > 1) wrong("ambiguous option " + quoted(given) + ": " + alternatives(candidates));
   return found;
 }
 
 void Options::set(Entry& entry, const std::string& argument) {
   entry.given = true;
+  given_.push_back({&entry, argument});
   try {
     entry.set(argument);
     // A name may be any text, but none is not a name.
@@ -255,7 +291,7 @@ void Options::take_letters(const std::string& word, Words& words) {
 }
 
 std::vector<std::string> Options::parse(int argc, char** argv, int least, int most) {
-  add(Kind::kFlag, 'h', "help", "", "this text", [this](const std::string&) { print_and_exit(usage()); });
+  add(Kind::kFlag, 'h', "help", "", "this text", [this](const std::string&) { print_and_exit(usage(help_width())); });
   add(Kind::kFlag, 0, "version", "", "the version", [this](const std::string&) {
     print_and_exit(tool_.substr(0, tool_.find(' ')) + " (synpo) " + version_text() + "\n");
   });
@@ -283,6 +319,17 @@ bool Options::given(const char* name) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == name && e.given; });
 }
 
+std::string Options::given_again(const std::vector<std::string>& without) const {
+  std::string line = tool_;
+  for (const auto& [entry, argument] : given_) {
+    if (std::find(without.begin(), without.end(), entry->name) != without.end()) continue;
+    const bool off = entry->kind == Kind::kToggle && argument == "0";
+    line += entry->letter ? std::string(" -") + entry->letter : concat(" --", off ? "no-" : "", entry->name);
+    if (entry->kind == Kind::kArgument) line += " " + shell_quoted(argument);
+  }
+  return line;
+}
+
 int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char** argv),
              const std::vector<Advice>& advice) {
   const auto report = [&](Exit code, const char* message) {
@@ -308,24 +355,37 @@ int run_tool(const char* tool, int argc, char** argv, int (*body)(int argc, char
 }
 
 int run_commands(const char* tool, const char* purpose, const std::vector<Command>& commands, int argc, char** argv) {
-  std::string list;
-  for (const Command& command : commands)
-    list += concat("  ", command.name, std::string(12 - std::min<size_t>(11, std::strlen(command.name)), ' '),
-                   command.purpose, "\n");
-  if (argc >= 2 && argv[1][0] != '-') {
+  const std::string see_help = concat("; try '", tool, " --help'");
+  const auto find = [&](const std::string& name) {
+    std::vector<std::string> names;
     for (const Command& command : commands) {
-      if (argv[1] != std::string(command.name)) continue;
-      try {
-        return command.body(argc - 1, argv + 1);
-      } catch (const Error& error) {
-        throw advised(error, command.advice);
-      }
+      if (name == command.name) return command;
+      names.emplace_back(command.name);
     }
-    fail(Exit::kUsage, "unknown command ", quoted(argv[1]), "; try '", tool, " --help'");
+    fail(Exit::kUsage, "unknown command ", quoted(name), did_you_mean(name, names), see_help);
+  };
+  const bool asks = argc >= 2 && argv[1] == std::string("help");
+  std::string help = "--help";
+  char* help_only[] = {argv[0], help.data(), nullptr};
+  if (asks && argc > 3) fail(Exit::kUsage, "unexpected operand ", quoted(argv[3]), see_help);
+  if (asks && argc == 3) return find(argv[2]).body(2, help_only);
+  if (argc >= 2 && argv[1][0] != '-' && !asks) {
+    const Command command = find(argv[1]);
+    try {
+      return command.body(argc - 1, argv + 1);
+    } catch (const Error& error) {
+      throw advised(error, command.advice);
+    }
   }
-  Options options(tool, "COMMAND [OPTION]...", concat(purpose, "\n\ncommands (each has its own --help):\n", list));
-  options.parse(argc, argv);
-  fail(Exit::kUsage, "a command is missing; try '", tool, " --help'");
+  Options options(tool, "COMMAND [OPTION]...", purpose);
+  options.section(concat("commands (see '", tool, " help COMMAND')").c_str());
+  for (const Command& command : commands) options.command(command.name, command.purpose);
+  options.section("options");
+  if (asks)
+    options.parse(2, help_only);
+  else
+    options.parse(argc, argv);
+  fail(Exit::kUsage, "a command is missing", see_help);
 }
 
 }  // namespace synpo

@@ -3,6 +3,7 @@
 //
 // Options are read as GNU's getopt_long reads them: -n 5, -n5, -qn5, --count 5, --count=5, any beginning of a name that
 // no other option shares; options and operands in any order, whatever POSIXLY_CORRECT says; operands alone after --.
+// Names are spelled as in Britain, and read in America's spelling too: --colour and --color.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -46,25 +47,37 @@ class Options {
   Options& shown_as(const std::string& default_text);
   // A heading in --help above the options that follow.
   Options& section(const char* title);
+  // A line of --help about a command of the tool.
+  Options& command(const char* name, const char* purpose);
 
   // Returns the operands. Between `least` and `most` are accepted. Prints and exits 0 on --help and --version.
   std::vector<std::string> parse(int argc, char** argv, int least = 0, int most = 0);
   // True when the option was given on the command line.
   bool given(const char* name) const;
+  // The tool and the options that were given, in their order, but for those named, as a shell reads them.
+  std::string given_again(const std::vector<std::string>& without) const;
+
+  // The text of --help in lines of at most `width` columns where words allow.
+  std::string usage(size_t width) const;
 
  private:
-  enum class Kind { kHeading, kFlag, kToggle, kArgument };
+  enum class Kind { kHeading, kCommand, kFlag, kToggle, kArgument };
   struct Entry {
     Kind kind;
     char letter;
     std::string name, arg, help, shown_default;
     std::function<void(const std::string&)> set;
     bool given = false;
+    std::vector<std::string> words = {};  // that the argument may be, where they are a few
   };
   // An option as it stands on the command line; `off`: as --no-NAME.
   struct Found {
     Entry* entry;
     bool off;
+  };
+  struct Given {
+    const Entry* entry;
+    std::string argument;
   };
   // The words of the command line that are left.
   struct Words {
@@ -73,7 +86,6 @@ class Options {
   };
   Options& add(Kind kind, char letter, const std::string& name, const char* arg, const std::string& help,
                std::function<void(const std::string&)> set);
-  std::string usage() const;
   [[noreturn]] void wrong(const std::string& message) const;
   Found find(const std::string& name);
   void take_long(const std::string& word, Words& words);
@@ -81,6 +93,7 @@ class Options {
   void set(Entry& entry, const std::string& argument);
   std::string tool_, synopsis_, purpose_;
   std::vector<Entry> entries_;
+  std::vector<Given> given_;
 };
 
 // "30m", "90s", "2h", "45" (seconds) to seconds; "2e7" and "20000" to a count; a finite number. Throw
@@ -107,7 +120,8 @@ struct Command {
   int (*body)(int argc, char** argv);
   std::vector<Advice> advice = {};
 };
-// A tool of several commands: picks the one that argv[1] names, handles --help and --version of the tool itself.
+// A tool of several commands: picks the one that argv[1] names; handles --help and --version of the tool itself, `help`
+// and `help COMMAND`.
 int run_commands(const char* tool, const char* purpose, const std::vector<Command>& commands, int argc, char** argv);
 
 }  // namespace synpo

@@ -5,10 +5,59 @@
 #include <algorithm>
 #include <cstdio>
 #include <utility>
+#include <vector>
+
+#include "base/cli/screen.h"
 
 namespace synpo {
 namespace {
+
 constexpr double kBarEvery_s = 0.2, kLineEvery_s = 30;
+constexpr int kUsualColumns = 80;
+
+std::string bar_of(int percent, int length) {
+  const int full = percent * length / 100;
+  return "[" + std::string(size_t(full), '=') + std::string(size_t(length - full), ' ') + "] ";
+}
+
+std::vector<std::string> fields_of(const std::string& note) {
+  std::vector<std::string> fields;
+  for (size_t begin = 0; begin < note.size();) {
+    const size_t end = std::min(note.find(", ", begin), note.size());
+    fields.push_back(note.substr(begin, end - begin));
+    begin = end + 2;
+  }
+  return fields;
+}
+
+}  // namespace
+
+std::string progress_line(const ProgressFields& fields, int columns) {
+  const bool known = fields.total > 0;
+  const int percent = known ? int(100 * std::min(fields.done, fields.total) / fields.total) : 0;
+  std::string tool, bar, of, left, rate, note;
+  const std::string so_far = known ? std::to_string(percent) + " %" : short_count(double(fields.done));
+  const auto line = [&] { return tool + bar + so_far + of + left + rate + note; };
+  bool room = true;
+  // Once a field has had no room, none that is less important is shown.
+  const auto show = [&](std::string& field, const std::string& text) {
+    if (!room) return;
+    const std::string before = std::exchange(field, text);
+    room = columns <= 0 || line().size() <= size_t(columns);
+    if (!room) field = before;
+  };
+  if (fields.left_s >= 0) show(left, ", " + clock_time(fields.left_s) + " left");
+  show(tool, fields.tool + ": ");
+  show(of, known ? " of " + short_count(double(fields.total)) + " " + fields.unit : " " + fields.unit);
+  show(rate, ", " + short_count(fields.rate) + "/s");
+  std::vector<std::string> notes = fields_of(fields.note);
+  if (!notes.empty()) show(note, ", " + notes[0]);
+  const bool has_bar = known && columns > 0;
+  if (has_bar) show(bar, bar_of(percent, 5));
+  for (size_t i = 1; i < notes.size(); ++i) show(note, note + ", " + notes[i]);
+  room = !bar.empty();
+  for (const int length : {10, 20}) show(bar, bar_of(percent, length));
+  return columns > 0 ? line().substr(0, size_t(columns)) : line();
 }
 
 Progress::Progress(std::string tool, std::string unit, uint64_t total, bool quiet, uint64_t first)
@@ -26,25 +75,19 @@ void Progress::update(uint64_t done, const std::string& note) {
 }
 
 void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {
-  const double rate = double(done - first_) / std::max(elapsed_s, 1e-9);
-  std::string line = tool_ + ": ";
-  if (total_ > 0) {
-    const int percent = int(100 * std::min(done, total_) / total_);
-    if (terminal_) line.append(1, '[').append(percent / 5, '=').append(20 - percent / 5, ' ').append("] ");
-    line += std::to_string(percent) + " % of " + short_count(double(total_)) + " " + unit_;
-    if (done > first_ && done < total_) line += ", " + clock_time((total_ - done) / rate) + " left";
-  } else {
-    line += short_count(double(done)) + " " + unit_;
+  ProgressFields fields{tool_, unit_, done, total_, -1, double(done - first_) / std::max(elapsed_s, 1e-9), note};
+  if (total_ > 0 && done > first_ && done < total_) fields.left_s = double(total_ - done) / fields.rate;
+  if (!terminal_) {
+    std::fprintf(stderr, "%s\n", progress_line(fields, 0).c_str());
+    return;
   }
-  line += ", " + short_count(rate) + "/s";
-  if (!note.empty()) line += ", " + note;
-  if (terminal_) {
-    std::fprintf(stderr, "\r%s\033[K", line.c_str());
-    std::fflush(stderr);
-    open_ = true;
-  } else {
-    std::fprintf(stderr, "%s\n", line.c_str());
-  }
+  const int columns = screen_size(2).columns;
+  // The last column stays free: a terminal is of two minds about a line that fills it.
+  shown_ = progress_line(fields, std::max(1, (columns > 0 ? columns : kUsualColumns) - 1));
+  // From the line's beginning, where the cursor stays, so that a terminal that was made narrower, and broke the line,
+  // is cleared of all of it.
+  std::fprintf(stderr, "\r\033[J%s\r", shown_.c_str());
+  std::fflush(stderr);
 }
 
 void Progress::say(const std::string& text) {
@@ -54,13 +97,13 @@ void Progress::say(const std::string& text) {
 void Progress::warn(const std::string& text) { line("warning: " + text); }
 
 void Progress::line(const std::string& text) {
-  std::fprintf(stderr, "%s%s: %s\n", open_ ? "\r\033[K" : "", tool_.c_str(), text.c_str());
-  open_ = false;
+  std::fprintf(stderr, "%s%s: %s\n", shown_.empty() ? "" : "\r\033[J", tool_.c_str(), text.c_str());
+  shown_.clear();
 }
 
 void Progress::finish() {
-  if (open_) std::fputc('\n', stderr);
-  open_ = false;
+  if (!shown_.empty()) std::fprintf(stderr, "\r\033[J%s\n", shown_.c_str());
+  shown_.clear();
 }
 
 std::string clock_time(double seconds) {

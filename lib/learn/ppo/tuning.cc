@@ -71,9 +71,8 @@ std::string Tuning::report(const Report& report) {
                     r.finished.wrong / n, r.finished.reward_cents / 100.0 / n, r.finished.length / n, r.policy, r.value,
                     r.entropy, r.kl, r.clip_fraction, r.explained_variance, e.seen_success, e.seen_reward,
                     e.unseen_success, e.unseen_reward});
-  std::string note = short_count(rate) + " steps/s";
-  if (n > 0) note += concat(", success ", std::lround(100 * r.finished.successes / n), " %");
-  return note;
+  const std::string speed = short_count(rate) + " steps/s";
+  return n > 0 ? concat("success ", std::lround(100 * r.finished.successes / n), " %, ", speed) : speed;
 }
 
 }  // namespace synpo

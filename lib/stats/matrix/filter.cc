@@ -26,13 +26,21 @@ std::string shown(const std::pair<std::string, std::string>& pair) {
 // -1, which none is, where the row does not say it.
 double temperature_of(const MatrixRow& row) { return row.temperature.value_or(-1); }
 
+template <class Value>
+std::string guess(const Value&, const std::set<Value>&) {
+  return "";
+}
+std::string guess(const std::string& name, const std::set<std::string>& names) {
+  return did_you_mean(name, {names.begin(), names.end()});
+}
+
 template <class Value, class Of>
 void check_names(const std::set<Value>& named, const Matrix& matrix, const char* what, Of of) {
   if (named.empty()) return;
   std::set<Value> there;
   for (const MatrixRow& row : matrix.rows) there.insert(of(row));
   for (const Value& value : named)
-    if (!there.contains(value)) fail(Exit::kData, "the matrix has no ", what, ' ', shown(value));
+    if (!there.contains(value)) fail(Exit::kData, "the matrix has no ", what, ' ', shown(value), guess(value, there));
 }
 
 }  // namespace

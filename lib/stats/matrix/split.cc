@@ -286,7 +286,7 @@ std::vector<std::string> choose_names(const std::string& option, const std::stri
   for (const std::string& name : list)
     if (std::find(names.begin(), names.end(), name) == names.end())
       fail(Exit::kUsage, option, ": there is no ", quoted(name), ", expected names such as ", names.front(),
-           " or a count");
+           " or a count", did_you_mean(name, names));
   return list;
 }
 

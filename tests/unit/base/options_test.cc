@@ -137,6 +137,65 @@ TEST(Options, WrongUsageIs64) {
   EXPECT_EQ(wrong_usage({}, 1, 1), "64 an operand is missing" + help);
 }
 
+TEST(Options, AMisspelledNameIsGuessed) {
+  const std::string help = "; try 'tool --help'";
+  EXPECT_EQ(wrong_usage({"--cuont", "3"}), "64 unknown option '--cuont' (did you mean '--count'?)" + help);
+  EXPECT_EQ(wrong_usage({"--no-kep"}), "64 unknown option '--no-kep' (did you mean '--no-keep'?)" + help);
+}
+
+TEST(Options, AreSpelledAsInAmericaToo) {
+  EXPECT_EQ(parsed({"--color", "blue"}).colour, "blue");
+  EXPECT_EQ(parsed({"--color=green"}).colour, "green");
+  EXPECT_EQ(parsed({"--colo", "green"}).colour, "green");
+  EXPECT_EQ(wrong_usage({"--color", "grey"}),
+            "64 option --colour: found 'grey', expected red, green or blue; try 'tool --help'");
+}
+
+TEST(Options, HelpFitsTheWidth) {
+  std::string name;
+  bool flag = false;
+  Options options("tool", "[-n COUNT] [-o FILE] [OPTION]... < INPUT > OUTPUT",
+                  "Does a number of things, one after the other.");
+  options.text('o', "output-of-the-tool", "FILE", "write what comes out to FILE, which is not there yet", name)
+      .flag('f', "force", "write to a terminal too, where -o names none", flag);
+  EXPECT_EQ(options.usage(120),
+            "usage: tool [-n COUNT] [-o FILE] [OPTION]... < INPUT > OUTPUT\n"
+            "Does a number of things, one after the other.\n\n"
+            "  -o, --output-of-the-tool FILE\n"
+            "                              write what comes out to FILE, which is not there yet\n"
+            "  -f, --force                 write to a terminal too, where -o names none\n");
+  EXPECT_EQ(options.usage(40),
+            "usage: tool [-n COUNT] [-o FILE]\n"
+            "       [OPTION]... < INPUT > OUTPUT\n"
+            "Does a number of things, one after the\n"
+            "other.\n\n"
+            "  -o, --output-of-the-tool FILE\n"
+            "        write what comes out to FILE,\n"
+            "        which is not there yet\n"
+            "  -f, --force\n"
+            "        write to a terminal too, where -o\n"
+            "        names none\n");
+}
+
+TEST(Options, WhatWasGivenIsGivenAgain) {
+  std::string name = "-";
+  bool flag = false, kept = true;
+  int64_t count = 1;
+  Options options("tool", "", "");
+  options.text('o', "output", "FILE", "", name)
+      .flag('f', "force", "", flag)
+      .toggle("keep", "", kept)
+      .integer('n', "count", "N", "", count, 0, 10)
+      .integer(0, "small", "N", "", count, 0, 10);
+  std::vector<std::string> words = {"tool", "-fn3", "--output=a b", "--no-keep", "--small", "2", "x"};
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+  options.parse(int(words.size()), argv.data(), 0, 1);
+  EXPECT_EQ(options.given_again({}), "tool -f -n 3 -o 'a b' --no-keep --small 2");
+  EXPECT_EQ(options.given_again({"count", "keep"}), "tool -f -o 'a b' --small 2");
+}
+
 TEST(Options, CountsAndTimes) {
   EXPECT_EQ(parse_count("20000"), 20000);
   EXPECT_EQ(parse_count("2e7"), 20000000);

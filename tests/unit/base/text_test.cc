@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/files/file_uses.h"
@@ -64,6 +65,29 @@ TEST(Text, FaultOfName) {
   EXPECT_EQ(fault_of_name("a\xc2\x9b"),
             "found a control character at byte 2 of the name (\\xc2\\x9b), expected UTF-8 text");
   EXPECT_EQ(fault_of_name("\x7f"), "found a control character at byte 1 of the name (\\x7f), expected UTF-8 text");
+}
+
+TEST(Text, ASlipOfThePenIsFound) {
+  const std::vector<std::string> names = {"split", "summary", "table", "rows", "show", "map1", "map3", "map13", "R-B"};
+  EXPECT_EQ(did_you_mean("sumary", names), " (did you mean 'summary'?)");
+  EXPECT_EQ(did_you_mean("tabel", names), " (did you mean 'table'?)");
+  EXPECT_EQ(did_you_mean("Split", names), " (did you mean 'split'?)");
+  EXPECT_EQ(did_you_mean("summ", names), " (did you mean 'summary'?)");
+  EXPECT_EQ(did_you_mean("ros", names), " (did you mean 'rows'?)");
+  EXPECT_EQ(did_you_mean("mpa13", names), " (did you mean 'map13'?)");
+  EXPECT_EQ(did_you_mean("r-b", names), " (did you mean 'R-B'?)");
+}
+
+TEST(Text, WhatIsNoSlipOfThePenIsNotGuessed) {
+  const std::vector<std::string> names = {"split", "summary", "map1", "map3", "map13"};
+  EXPECT_EQ(did_you_mean("map2", names), "");  // another number is another thing
+  EXPECT_EQ(did_you_mean("nothing", names), "");
+  EXPECT_EQ(did_you_mean("", names), "");
+  EXPECT_EQ(did_you_mean("s", names), "");
+  EXPECT_EQ(did_you_mean(std::string(100000, 's'), names), "");
+  EXPECT_EQ(did_you_mean("split", {}), "");
+  EXPECT_EQ(did_you_mean("bat", {"cat", "rat", "bar"}), " (did you mean 'cat', 'rat' or 'bar'?)");
+  EXPECT_EQ(did_you_mean("bat", {"cat", "rat", "bar", "bag"}), "");
 }
 
 }  // namespace
