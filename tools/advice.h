@@ -17,7 +17,7 @@ namespace synpo {
 constexpr Advice kSeeWorld = {kOtherWorld, "{} (other maps? see -w)"};
 constexpr Advice kNameFolder = {kNoSource, "{}: name their folder with -w kitchen:DIR"};
 constexpr Advice kNameOtherFolder = {kOtherSource, "{}, expected -w kitchen:DIR"};
-constexpr Advice kLeaveWorld = {kNeedsNoSource, "{}: -w is for those that lie in files of their own"};
+constexpr Advice kLeaveWorld = {kNeedsNoSource, "{}: -w may name the same, or those that lie in files of their own"};
 constexpr Advice kBuildPlugin = {kNoPlugin, "{}: make torch builds it (synpo(7))"};
 constexpr Advice kWriteEnd = {kNoEnd, "{} (synpo-gen-expert --end writes one: was the stream cut off?)"};
 constexpr Advice kSmallerRate = {kNotFinite, "{}: try a smaller --lr"};

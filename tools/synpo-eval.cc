@@ -1,4 +1,4 @@
-// A checkpoint on stdin, its success matrix on stdout.
+// A checkpoint in, its success matrix out.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
@@ -86,11 +86,12 @@ int body(int argc, char** argv) {
   int threads = 0;
   DeviceOptions device;
   bool says_end = false, describe = false, quiet = false;
-  Options options("synpo-eval", "[-p PAIRS] [-n EPISODES] [OPTION]... < CHECKPOINT > MATRIX",
+  Options options("synpo-eval", "[-p PAIRS] [-n EPISODES] [OPTION]... [CHECKPOINT] > MATRIX",
                   "Runs the policy of a checkpoint on every pair and counts successes.");
   options.text('c', "checkpoint", "FILE", "the checkpoint", checkpoint_path)
       .text('p', "pairs", "FILE", "pairs to run, all its rows: TSV env, task (all pairs)", pairs_path)
-      .text('w', "world", "WORLD", "kitchen:DIR, where the checkpoint's kitchens lie in files of their own", world_name)
+      .text('w', "world", "WORLD", "needed as kitchen:DIR, where the checkpoint's kitchens lie in files of their own",
+            world_name)
       .integer('n', "count", "N", "episodes of every pair", plan.count, 1, 100000000)
       .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", plan.first, 0,
                1000000000000)
@@ -110,7 +111,7 @@ int body(int argc, char** argv) {
       .text('o', "output", "FILE", "write the matrix to FILE", output_path)
       .flag(0, "describe", "print what the checkpoint says of itself, as JSON, and quit", describe)
       .quiet(quiet);
-  options.parse(argc, argv);
+  checkpoint_path = one_file(options, "checkpoint", checkpoint_path, options.parse(argc, argv, 0, 1));
   const bool for_training = starts == "training";
   if (for_training && record_path.empty()) fail(Exit::kUsage, "--starts training goes with --record");
   if (says_end && record_path.empty()) fail(Exit::kUsage, "--end goes with --record");

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "advice.h"
 #include "base/cli/options.h"
@@ -22,8 +23,8 @@ using namespace synpo;
 namespace {
 
 // The stream says its end where `says_end`, and then the one that it comes from must have said it.
-void relabel(const World& world, Output& output, bool says_end) {
-  Input input("-");
+void relabel(const World& world, const std::vector<std::string>& files, Output& output, bool says_end) {
+  Input input(files);
   TrajectoryLines lines(input);
   std::string line;
   while (lines.next(line)) {
@@ -46,8 +47,8 @@ int gen_expert(int argc, char** argv) {
   bool relabel_stream = false, play = false, says_end = false, quiet = false;
   Options options(
       "synpo-gen-expert",
-      "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [--end] [-w WORLD] [-o FILE] < "
-      "TRAJECTORIES\n       synpo-gen-expert --play [-w WORLD] [-p PAIRS] [--window R] < REQUESTS > ANSWERS",
+      "[-p PAIRS] [-n COUNT] [OPTION]...\n       synpo-gen-expert --relabel [--end] [-w WORLD] [-o FILE] "
+      "[TRAJECTORIES]...\n       synpo-gen-expert --play [-w WORLD] [-p PAIRS] [--window R] < REQUESTS > ANSWERS",
       "Writes trajectories of the shortest-path expert, a JSON object a line.");
   options
       .text('p', "pairs", "FILE", "pairs to draw from: TSV env, task, seen; rows with seen = 1 (all pairs)", pairs_path)
@@ -58,14 +59,15 @@ int gen_expert(int argc, char** argv) {
       .seed(stream.seed)
       .real(0, "noise", "P", "probability of a random move in place of the expert's; labels stay the expert's",
             stream.noise, 0, 1)
-      .flag(0, "relabel", "trajectories on stdin; out come the same with the expert's labels", relabel_stream)
+      .flag(0, "relabel", "instead: read trajectories, write the same with the expert's labels", relabel_stream)
       .flag(0, "play", "play what another program asks for: requests on stdin, observations on stdout", play)
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
       .flag(0, "end", "a last line says how many trajectories there are (--relabel: if it did so there)", says_end)
       .text('w', "world", "WORLD", alternatives(world_names()), world_name)
       .text('o', "output", "FILE", "write to FILE", output_path)
       .quiet(quiet);
-  options.parse(argc, argv);
+  const std::vector<std::string> files = options.parse(argc, argv, 0, kMostStreamFiles);
+  if (!relabel_stream && !files.empty()) options.wrong("unexpected operand " + quoted(files[0]));
   if (relabel_stream)
     for (const char* other : {"pairs", "count", "per-pair", "noise", "seed", "window"})
       if (options.given(other)) fail(Exit::kUsage, "--relabel does not go with --", other);
@@ -81,7 +83,7 @@ int gen_expert(int argc, char** argv) {
   const World& world = *opened;
   Output output(output_path, Output::Kind::kStream);
   if (relabel_stream) {
-    relabel(world, output, says_end);
+    relabel(world, files, output, says_end);
     output.finish();
     return 0;
   }

@@ -8,6 +8,9 @@
 
 #include "base/cli/options.h"
 #include "base/files/io.h"
+#include "colour.h"
+#include "draw/colour.h"
+#include "draw/terminal/terminal.h"
 #include "format/matrix.h"
 #include "stats/matrix/heat_table.h"
 #include "stats/matrix/merge.h"
@@ -17,21 +20,36 @@
 
 namespace synpo {
 
+namespace {
+
+// The names of subsets on blocks of their colours in a matrix, as dark as their success; none where there is no colour.
+PaintName paint_with(TerminalColour colour) {
+  if (colour == TerminalColour::kNone) return nullptr;
+  return [colour](const SubsetSummary& subset, const std::string& name) {
+    const double rate = subset.success.pooled;
+    if (!(rate >= 0 && rate <= 1)) return name;
+    return ground_code(ramp_colour(subset_ramp(subset.name, find_scheme("safe")), rate), colour) + name + kPlainCode;
+  };
+}
+
+}  // namespace
+
 int matrix_summary(int argc, char** argv) {
   bool table = false, quiet = false;
   std::string output_path = "-";
+  ColourOption colour;
   Options options(
       "synpo-matrix summary", "[OPTION]... [MATRIX]...",
       "Success, reward, length, wrong picks and timeouts over seen and unseen pairs; several runs with mean and sd.");
-  options.flag(0, "tsv", "a table for machines", table)
-      .flag('q', "quiet", "no notes on stderr", quiet)
-      .text('o', "output", "FILE", "where the summary goes", output_path);
+  options.flag(0, "tsv", "a table for machines", table).flag('q', "quiet", "no notes on stderr", quiet);
+  colour.add_to(options);
+  options.text('o', "output", "FILE", "where the summary goes", output_path);
   const std::vector<GroupSummary> groups = summarise(read_matrices(options.parse(argc, argv, 0, kMostFiles)));
   Output output(output_path);
   if (table)
     write_summary(output, groups);
   else
-    output.write(summary_text(groups));
+    output.write(summary_text(groups, paint_with(colour.of(output))));
   output.finish();
   for (const GroupSummary& group : groups)
     for (const std::string& note : group.notes)

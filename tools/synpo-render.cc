@@ -23,6 +23,8 @@
 #include "draw/plot/curves.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
+#include "format/checkpoint.h"
+#include "play/model.h"
 #include "stats/matrix/heat_table.h"
 #include "world/grid/maze.h"
 #include "world/world.h"
@@ -34,24 +36,24 @@ namespace {
 int map(int argc, char** argv) {
   MapStyle style;
   PictureOptions picture;
-  std::string world = "gridworld";
+  WorldOptions world;
   Options options("synpo-render map", "[OPTION]... [NAME]...",
                   "Draws mazes or kitchens: the ones named, else all, as a grid with their names.");
-  options.text('w', "world", "WORLD", kWorldHelp, world)
-      .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
+  world.add_to(options);
+  options.call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .integer(0, "columns", "N", "mazes in a row; 0: a grid a little wider than high", style.columns, 0, 1000);
   picture.add_ansi(options);
   picture.add_to(options);
   const auto names = options.parse(argc, argv, 0, 1000);
   picture.settle(options);
   style.scale = picture.scale;
-  const std::unique_ptr<const WorldFace> face = open_face(world);
+  const std::unique_ptr<const WorldFace> face = world.open(options);
   std::vector<int> envs(names.empty() ? size_t(face->world().envs()) : 0);
   std::iota(envs.begin(), envs.end(), 0);
   for (const std::string& name : names) envs.push_back(find_env(*face, name));
   Output output = picture.open();
   if (picture.ansi)
-    finish(output, face->plans_text(envs, style, environment_colour(), terminal_width(output.is_stdout() ? 1 : -1)));
+    finish(output, face->plans_text(envs, style, picture.colour.of(output), picture.width(output)));
   else {
     const Font font(picture.font);
     picture.finish(output, face->draw_plans(envs, style, font));
@@ -62,12 +64,13 @@ int map(int argc, char** argv) {
 int view(int argc, char** argv) {
   ViewStyle style;
   PictureOptions picture;
-  std::string world = "gridworld", env, task;
+  WorldOptions world;
+  std::string env, task;
   int64_t seed = 0, episode = 0, steps = 0, window = 1;
   Options options("synpo-render view", "[OPTION]...",
                   "Draws a moment of an expert's episode and what the agent sees of it.");
-  options.text('w', "world", "WORLD", kWorldHelp, world)
-      .text('e', "env", "NAME", "maze or kitchen; none: the world's first", env)
+  world.add_to(options);
+  options.text('e', "env", "NAME", "maze or kitchen; none: the world's first", env)
       .text('t', "task", "NAME", "task; none: the world's first, R-B or Container-Fridge", task)
       .integer('s', "seed", "N", "seed of the start", seed, 0, INT64_MAX)
       .integer(0, "episode", "N", "number of the episode under this seed", episode, 0, UINT32_MAX)
@@ -79,10 +82,11 @@ int view(int argc, char** argv) {
   options.parse(argc, argv);
   picture.settle(options);
   style.scale = picture.scale;
-  const std::unique_ptr<const WorldFace> face = open_face(world);
+  const std::unique_ptr<const WorldFace> face = world.open(options);
   if (!face->kind().has_window && options.given("window"))
     fail(Exit::kUsage, "--window is for ", environments_with(&FaceKind::has_window), ", but the world is ",
-         quoted(world));
+         quoted(face->world().name()));
+  if (!options.given("window")) window = world.window;
   Output output = picture.open();
   const Font font(picture.font);
   const EnvTask pair = {env.empty() ? 0 : find_env(*face, env), task.empty() ? 0 : find_task(*face, task)};
@@ -111,6 +115,14 @@ int body(int argc, char** argv) {
 }
 
 }  // namespace
+
+std::unique_ptr<const WorldFace> WorldOptions::open(const Options& options) {
+  if (checkpoint.empty()) return open_face(name);
+  if (options.given("world")) fail(Exit::kUsage, "-w and -c exclude each other");
+  const Checkpoint loaded = load_checkpoint(checkpoint);
+  window = int(loaded.window);
+  return face_of(world_of(loaded));
+}
 
 int find_env(const WorldFace& face, const std::string& name, const char* world) {
   const int found = face.world().env_index(name);

@@ -1,9 +1,11 @@
-// Imitation learning: expert trajectories on stdin, a checkpoint on stdout.
+// Imitation learning: expert trajectories in, a checkpoint out.
 #include <sys/resource.h>
 
 #include <cstdint>
 #include <cstdio>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "advice.h"
 #include "base/cli/options.h"
@@ -12,6 +14,7 @@
 #include "base/parallel.h"
 #include "base/signals.h"
 #include "base/text.h"
+#include "going_on.h"
 #include "learn/imitate.h"
 #include "learn/recipe.h"
 #include "learn/training.h"
@@ -35,7 +38,7 @@ int body(int argc, char** argv) {
   std::string limit;
   s.updates = 20000;
   const std::string methods = alternatives(method_names());
-  Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... < TRAJECTORIES > CHECKPOINT",
+  Options options("synpo-train", "[-n UPDATES | --time LIMIT] [OPTION]... [TRAJECTORIES]... > CHECKPOINT",
                   "Learns a policy from expert trajectories. When the stream ends it goes on with those it keeps.");
   options.integer('n', "count", "N", "updates in all; a resumed run has the checkpoint's", s.updates, 1, kMostUpdates)
       .call(0, "time", "LIMIT", "instead of -n: as many updates as fit (90s, 30m, 2h) at the rate of the first ones",
@@ -50,7 +53,7 @@ int body(int argc, char** argv) {
       .flag(0, "expect-end", "a stream that does not say its end in a last line is an error", s.expect_end);
   s.add_to(options);
   s.recipe.add_to(options);
-  options.parse(argc, argv);
+  s.stream = options.parse(argc, argv, 0, kMostStreamFiles);
   const bool resumes = options.given("resume"), counted = options.given("count"), timed = options.given("time");
   if (resumes && (s.recipe.given() || options.given("init") || options.given("pairs") || options.given("method") ||
                   options.given("seed")))
@@ -66,6 +69,12 @@ int body(int argc, char** argv) {
   Training training(s, parallel);
   const int code = s.drive("synpo-train", training);
   if (!s.quiet) summarise(training);
+  if (code != 0) {
+    std::vector<std::string> kept = RecipeOptions::option_names();  // by the checkpoint
+    kept.insert(kept.end(), {"init", "pairs", "method", "seed"});
+    if (training.total() > 0) kept.emplace_back("time");
+    tell_how_to_go_on("synpo-train", s, options, std::move(kept), {true, s.stream});
+  }
   return code;
 }
 

@@ -79,12 +79,15 @@ Rgb ink_on(Rgb ground) {
   return luminance(ground) > std::sqrt(1.05 * 0.05) - 0.05 ? Rgb{0, 0, 0} : Rgb{255, 255, 255};
 }
 
-const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme) {
+const Ramp& subset_ramp(const std::string& name, const Scheme& scheme) {
   static const Ramp grey = {0, 0};
-  if (group < 0) return grey;
-  const std::string& name = table.groups[group].name;
-  if (table.by_part) return name == "Q" ? scheme.seen : name == "P" ? scheme.other : scheme.unseen;
-  return name == "seen" ? scheme.seen : name == "new" ? scheme.other : scheme.unseen;
+  if (name == "all") return grey;
+  if (name == "seen" || name == "Q") return scheme.seen;
+  return name == "new" || name == "P" ? scheme.other : scheme.unseen;
+}
+
+const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme) {
+  return subset_ramp(group < 0 ? "all" : table.groups[group].name, scheme);
 }
 
 Rgb time_colour(double share) {

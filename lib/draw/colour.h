@@ -29,6 +29,9 @@ const Scheme& find_scheme(const std::string& name);
 // The ramp of a group of the table; a grey one for all pairs (-1).
 const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme);
 
+// The same for a subset of pairs by its name: seen, unseen or new, a part, or all.
+const Ramp& subset_ramp(const std::string& name, const Scheme& scheme);
+
 // The colour that lies `share` of the way from one to the other.
 Rgb mix(Rgb from, Rgb to, double share);
 // Black or white, whichever stands out more.

@@ -283,6 +283,12 @@ void RecipeOptions::add_to(Options& options) {
       .flag(0, "no-task-loss", "the same as --task-loss 0", no_task_loss_);
 }
 
+std::vector<std::string> RecipeOptions::option_names() {
+  std::vector<std::string> names = {"recipe", "no-reward-loss", "no-env-loss", "no-task-loss"};
+  for (const Hyper& hyper : hypers()) names.push_back(hyper.name);
+  return names;
+}
+
 ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) const {
   ImitationOptions options = recipe(recipe_, method, sight);
   for (const Hyper& hyper : hypers())

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "base/cli/options.h"
 #include "learn/steps.h"
@@ -63,6 +64,8 @@ class RecipeOptions {
   ImitationOptions result(const std::string& method, Sight sight = Sight::kPictures) const;
   bool given() const { return !changes_.empty() || recipe_given_ || no_reward_loss_ || no_env_loss_ || no_task_loss_; }
   const std::string& name() const { return recipe_; }
+  // Of all options that add_to() adds.
+  static std::vector<std::string> option_names();
 
  private:
   std::string recipe_ = kDefaultRecipe;

@@ -83,7 +83,7 @@ void Training::check_length() {
 }
 
 void Training::begin() {
-  input_.emplace("-");
+  input_.emplace(settings_.stream);
   stream_.emplace(*input_, *world_, run_->allowed(), run_->window());
   stream_->skip(run_->stream_lines(), run_->stream_hash());
   start_ = now();
@@ -92,7 +92,7 @@ void Training::begin() {
 void Training::update(Progress& progress) {
   run_->read(*stream_);
   if (run_->updates() <= first_ + slow_) filled_ = now();
-  if (!run_->learn()) fail(Exit::kData, "standard input has no trajectory");
+  if (!run_->learn()) fail(Exit::kData, input_->whole_name(), " has no trajectory");
   note_tested_start(progress);
   if (stream_->ended()) check_length();
   if (timing()) tell_total(progress);

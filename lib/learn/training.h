@@ -33,8 +33,9 @@ struct TrainingSettings : LongRun {
   // The limit: so many updates in all, or as many as fit into a time; 0: not given, for a resumed run alone.
   int64_t updates = 0;
   double limit_s = 0;
-  int64_t expect = 0;       // trajectories that the stream must have
-  bool expect_end = false;  // the stream must say its end
+  std::vector<std::string> stream;  // files, one after the other; none: standard input
+  int64_t expect = 0;               // trajectories that it must have
+  bool expect_end = false;          // it must say its end
   // Says that a limit in time has been turned into a number of updates.
   std::function<std::string(int64_t total)> told = nullptr;
   // Says that the run learns from the starts that success matrices are made of.

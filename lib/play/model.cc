@@ -27,6 +27,20 @@ auto naming_file(const Checkpoint& checkpoint, Body&& body) {
   }
 }
 
+void check_holds(const Checkpoint& checkpoint, const World& world, const std::string& name) {
+  const auto differs = [&](const auto&... how) {
+    fail(Exit::kUsage, kNeedsNoSource, "the checkpoint holds its environments, ", how...);
+  };
+  if (world.name() != checkpoint.world)
+    differs("which are of ", quoted(checkpoint.world), ", but found ", quoted(name));
+  for (const Environment& env : world.environments()) {
+    const auto held = std::find_if(checkpoint.envs.begin(), checkpoint.envs.end(),
+                                   [&](const Checkpoint::Env& one) { return one.name == env.name; });
+    if (held == checkpoint.envs.end()) differs("and ", quoted(env.name), " of ", quoted(name), " is none of them");
+    if (held->hash != env.hash) differs("and its ", quoted(env.name), " is not the one of ", quoted(name));
+  }
+}
+
 std::unique_ptr<World> restored_world(const Checkpoint& checkpoint, const World* source) {
   if (checkpoint.envs.empty()) fail(Exit::kData, "the checkpoint has no environment");
   std::vector<Environment> environments;
@@ -106,9 +120,10 @@ bool lies_in_files(const Checkpoint& checkpoint) {
 
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source) {
   if (source.empty()) return world_of(checkpoint);
-  if (!lies_in_files(checkpoint)) fail(Exit::kUsage, kNeedsNoSource, "the checkpoint holds its environments");
   const std::unique_ptr<World> opened = open_world(source);
-  return world_of(checkpoint, opened.get());
+  if (lies_in_files(checkpoint)) return world_of(checkpoint, opened.get());
+  check_holds(checkpoint, *opened, source);
+  return world_of(checkpoint);
 }
 
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source) {

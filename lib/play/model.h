@@ -45,7 +45,7 @@ bool lies_in_files(const Checkpoint& checkpoint);
 // they are not there, are other ones, or don't fit this build, kUsage where there is no source.
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const World* source = nullptr);
 // The same with the name of a world to open as the source, which may be empty. Throws kUsage (kNeedsNoSource) where a
-// checkpoint that holds its environments is given one.
+// checkpoint that holds its environments is given one with another environment than those.
 constexpr Cause kNeedsNoSource{"a source for environments that the checkpoint holds"};
 std::unique_ptr<World> world_of(const Checkpoint& checkpoint, const std::string& source);
 // Throws kData when tensors or world don't fit, or features come from another extractor.

@@ -67,12 +67,13 @@ void TrajectoryStream::check_end() {
 void TrajectoryStream::skip(uint64_t lines, uint64_t hash) {
   for (; lines_ < lines; ++lines_) {
     if (!take_line())
-      fail(Exit::kData, input_.name(), ": it ends at line ", lines_, ", but the checkpoint has read ", lines,
+      fail(Exit::kData, input_.whole_name(), ": it ends at line ", lines_, ", but the checkpoint has read ", lines,
            " lines: another stream?");
     hash_.add(line_).add("\n");
   }
   if (hash_.value() != hash)
-    fail(Exit::kData, input_.name(), ": the first ", lines, " lines are not those that the checkpoint was trained on");
+    fail(Exit::kData, input_.whole_name(), ": the first ", lines,
+         " lines are not those that the checkpoint was trained on");
 }
 
 }  // namespace synpo

@@ -151,6 +151,6 @@ for_writers() {
 @test "text goes to a terminal; progress there is one line that is overwritten, without colours" {
     run -0 on_terminal "synpo-gen-expert -n 1"
     jq -e .success "$BATS_TEST_TMPDIR/err"
-    run -0 on_terminal "synpo-matrix summary m.tsv"
+    run -0 on_terminal "synpo-matrix summary --colour never m.tsv"
     run ! grep -q "$(printf '\033')" "$BATS_TEST_TMPDIR/err"
 }

@@ -1,4 +1,4 @@
-// Demonstrations on stdin, an adapted checkpoint on stdout.
+// Demonstrations in, an adapted checkpoint out.
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -78,7 +78,7 @@ int adapt(int argc, char** argv) {
   bool expect_end = false, force = false, quiet = false;
   DeviceOptions device;
   Options options(
-      "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... < DEMONSTRATIONS > CHECKPOINT",
+      "synpo-finetune adapt", "-c CHECKPOINT [OPTION]... [DEMONSTRATIONS]... > CHECKPOINT",
       "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
       .text('w', "world", "WORLD", concat("new environments too: ", alternatives(world_names())), world_name)
@@ -101,7 +101,7 @@ int adapt(int argc, char** argv) {
   options.text('o', "output", "FILE", "write the checkpoint to FILE", output_path)
       .flag('f', "force", "write the checkpoint to a terminal", force)
       .quiet(quiet);
-  options.parse(argc, argv);
+  const std::vector<std::string> files = options.parse(argc, argv, 0, kMostStreamFiles);
   if (checkpoint_path.empty()) fail(Exit::kUsage, "-c CHECKPOINT is missing");
 
   catch_stop_signals();
@@ -115,11 +115,11 @@ int adapt(int argc, char** argv) {
   compute_on(device, parallel, wide);
   Adaptation adapted(*world, parallel, std::move(wide), adaptation, seed);
   Output output(output_path, Output::Kind::kBinary, force);
-  Input input("-");
+  Input input(files);
   TrajectoryStream stream(input, *world, {}, model.window);
   while (const std::optional<Episode> episode = stream.next()) adapted.add(*episode);
   if (expect_end) stream.check_end();
-  if (adapted.demonstrations() == 0) fail(Exit::kData, "standard input has no trajectory");
+  if (adapted.demonstrations() == 0) fail(Exit::kData, input.whole_name(), " has no trajectory");
   Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
   if (stream.tested_start()) progress.warn(words(*stream.tested_start()));
   progress.say(concat(adapted.demonstrations(), " demonstrations, ", adapted.new_envs(), " new environments, ",

@@ -1,6 +1,7 @@
-// A checkpoint on stdin, fine-tuned by PPO, a checkpoint on stdout.
+// A checkpoint in, the same fine-tuned by PPO out.
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "base/cli/options.h"
 #include "base/error.h"
@@ -8,6 +9,7 @@
 #include "base/signals.h"
 #include "base/text.h"
 #include "finetune/finetune.h"
+#include "going_on.h"
 #include "learn/ppo/ppo_options.h"
 #include "learn/ppo/tuning.h"
 #include "play/world_factory.h"
@@ -20,7 +22,7 @@ int ppo(int argc, char** argv) {
   s.world = "gridworld";
   const std::string worlds =
       concat("with --init: ", alternatives(world_names()), "; else the folder of the checkpoint's scenes");
-  Options options("synpo-finetune ppo", "[--steps N] [OPTION]... < CHECKPOINT > CHECKPOINT",
+  Options options("synpo-finetune ppo", "[--steps N] [OPTION]... [CHECKPOINT] > CHECKPOINT",
                   "Fine-tunes a policy by its reward.");
   options.text('c', "checkpoint", "FILE", "the trained policy", s.checkpoint)
       .integer(0, "steps", "N", "steps of all worlds together, such as 2e7", s.steps, 1, INT64_MAX)
@@ -33,14 +35,18 @@ int ppo(int argc, char** argv) {
       .text('m', "method", "NAME", "with --init: the method", s.method);
   s.add_to(options);
   s.ppo.add_to(options);
-  options.parse(argc, argv);
+  const std::vector<std::string> files = options.parse(argc, argv, 0, 1);
   s.random = options.given("init");
-  if (s.random && options.given("checkpoint")) fail(Exit::kUsage, "-c and --init exclude each other");
+  if (s.random && (options.given("checkpoint") || !files.empty()))
+    fail(Exit::kUsage, files.empty() ? "-c" : "a checkpoint", " and --init exclude each other");
+  s.checkpoint = one_file(options, "checkpoint", s.checkpoint, files);
   if (!s.random && options.given("method")) fail(Exit::kUsage, "-m goes with --init");
   if (!options.given("world") && (!s.random || options.given("resume"))) s.world.clear();
 
   catch_stop_signals();
   Parallel parallel(s.threads);
   Tuning tuning(s, options, parallel);
-  return s.drive("synpo-finetune", tuning);
+  const int code = s.drive("synpo-finetune", tuning);
+  if (code != 0) tell_how_to_go_on("synpo-finetune", s, options, {"checkpoint"}, {false, {}});
+  return code;
 }

@@ -1,11 +1,12 @@
 // synpo-render episode: a trajectory as a path through its maze or kitchen, and what the agent saw on the way.
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "base/cli/options.h"
 #include "base/error.h"
@@ -21,8 +22,9 @@
 #include "draw/video/gif.h"
 #include "draw/video/video.h"
 #include "draw/worlds/faces.h"
+#include "format/trajectory.h"
 #include "play/episode.h"
-#include "play/stream.h"
+#include "play/world_factory.h"
 #include "render/render.h"
 #include "world/world.h"
 
@@ -30,14 +32,34 @@ using namespace synpo;
 
 namespace {
 
-Film read_film(Input& input, const World& world, int64_t line) {
-  TrajectoryStream stream(input, world, {});
-  const uint64_t before = stream.length_up_to(uint64_t(line - 1));
-  const std::optional<Episode> episode = stream.next();
-  if (!episode)
-    fail(Exit::kData, input.name(), ": it ends after ", before, before == 1 ? " line" : " lines", ", before line ",
-         line);
-  return play_film(world, episode->pair, episode->start, episode->actions, stream.window());
+Trajectory read_trajectory(Input& input, int64_t line) {
+  std::string text;
+  for (int64_t before = 0; before < line; ++before)
+    if (!input.line(text))
+      fail(Exit::kData, input.name(), ": it ends after ", before, before == 1 ? " line" : " lines", ", before line ",
+           line);
+  try {
+    return parse_trajectory(text, kStepLimit);
+  } catch (const Error& error) {
+    input.bad_line(error);
+  }
+}
+
+// The built-in world that the trajectory names.
+std::unique_ptr<const WorldFace> world_named(const Input& input, const Trajectory& trajectory) {
+  const std::vector<std::string>& names = world_names();
+  if (std::find(names.begin(), names.end(), trajectory.world) == names.end())
+    input.bad_line(concat("world ", quoted(trajectory.world), ", expected ", drawn_worlds()));
+  return open_face(trajectory.world);
+}
+
+Film played(const Input& input, const World& world, const Trajectory& trajectory) {
+  try {
+    const Episode episode = replay(world, trajectory);
+    return play_film(world, episode.pair, episode.start, episode.actions, trajectory.window);
+  } catch (const Error& error) {
+    input.bad_line(error);
+  }
 }
 
 // Of the start and after every step.
@@ -77,40 +99,39 @@ void write_video(const std::string& path, double rate, int steps, const Frame& f
 int episode(int argc, char** argv) {
   EpisodeStyle style;
   PictureOptions picture;
-  std::string world_name = "gridworld", frames, video;
+  WorldOptions world;
+  std::string frames, video;
   int64_t line = 1;
   double rate = 8;
-  bool ansi = false;
   Options options(
       "synpo-render episode", "[OPTION]... [TRAJECTORIES]",
       "Draws an episode as a path through its maze or kitchen, from light to dark, and what the agent saw on the way.");
-  options.text('w', "world", "WORLD", kWorldHelp, world_name)
-      .integer(0, "line", "N", "the episode's line", line, 1, INT64_MAX)
+  world.name.clear();
+  world.add_to(options,
+               "gridworld, gridworld:DIR for the map files of a folder, or kitchen [the one that the file names]");
+  options.integer(0, "line", "N", "the episode's line", line, 1, INT64_MAX)
       .integer(0, "strip", "N", "pictures of what the agent saw: the first, picks, the last, others between; 0: none",
                style.strip, 0, kStepLimit)
       .call(0, "title", "TEXT", "title instead of environment and task", drawn(style.title))
-      .section("instead of the picture")
-      .flag(0, "ansi", "the path through a maze as text, in coloured blocks on a terminal that has colours", ansi)
-      .text(0, "frames", "DIR", "a folder of numbered PNG files, one for the start and one after every step", frames)
+      .section("instead of the picture");
+  picture.add_ansi(options, "the path through a maze as text, in coloured blocks on a terminal that has colours");
+  options.text(0, "frames", "DIR", "a folder of numbered PNG files, one for the start and one after every step", frames)
       .text(0, "video", "FILE", "the same as a video: .gif, .avi, or .mp4, .mkv where OpenCV can", video)
       .real(0, "rate", "HZ", "the video's frames per second", rate, 0.1, 240);
   picture.add_to(options, {"png", "pdf", "svg", "gif"});
   const auto operands = options.parse(argc, argv, 0, 1);
-  const std::unique_ptr<const WorldFace> face = open_face(world_name);
   const bool draws_films = !frames.empty() || !video.empty();
-  if (ansi && draws_films) fail(Exit::kUsage, "--ansi goes without --frames and --video");
-  if (ansi && !face->kind().has_text)
-    fail(Exit::kUsage, "--ansi is for ", environments_with(&FaceKind::has_text), ", but the world is ",
-         quoted(world_name));
+  if (!picture.ansi && options.given("colour")) fail(Exit::kUsage, "--colour is for --ansi");
+  if (picture.ansi && draws_films) fail(Exit::kUsage, "--ansi goes without --frames and --video");
   for (const char* option : {"output", "format"})
     if (draws_films && options.given(option))
       fail(Exit::kUsage, "--frames and --video take the place of the picture, but --", option, " is given");
-  if (ansi && options.given("format")) fail(Exit::kUsage, "--format is for a picture, not for --ansi");
+  if (picture.ansi && options.given("format")) fail(Exit::kUsage, "--format is for a picture, not for --ansi");
   if (video.ends_with(".gif")) {
     picture.output = std::exchange(video, "");
     picture.format = "gif";
   }
-  if (!ansi) picture.settle(options);
+  if (!picture.ansi) picture.settle(options);
   const bool moves = picture.format == "gif";
   if (options.given("rate") && video.empty() && !moves) fail(Exit::kUsage, "--rate is for --video and for a GIF");
   style.scale = picture.scale;
@@ -118,14 +139,20 @@ int episode(int argc, char** argv) {
 
   std::unique_ptr<Output> output;
   if (moves || !draws_films)
-    output =
-        std::make_unique<Output>(picture.output, ansi ? Output::Kind::kText : Output::Kind::kBinary, picture.force);
+    output = std::make_unique<Output>(picture.output, picture.ansi ? Output::Kind::kText : Output::Kind::kBinary,
+                                      picture.force);
   Input input(operands.empty() ? "-" : operands[0]);
   std::unique_ptr<const Font> font;
-  if (!ansi) font = std::make_unique<const Font>(picture.font);
-  const Film film = read_film(input, face->world(), line);
-  if (ansi) {
-    finish(*output, face->film_text(film, terminal_colour(output->is_stdout() ? 1 : -1)));
+  if (!picture.ansi) font = std::make_unique<const Font>(picture.font);
+  const Trajectory trajectory = read_trajectory(input, line);
+  const std::unique_ptr<const WorldFace> face =
+      options.given("world") || options.given("checkpoint") ? world.open(options) : world_named(input, trajectory);
+  if (picture.ansi && !face->kind().has_text)
+    fail(Exit::kUsage, "--ansi is for ", environments_with(&FaceKind::has_text), ", but the world is ",
+         quoted(face->world().name()));
+  const Film film = played(input, face->world(), trajectory);
+  if (picture.ansi) {
+    finish(*output, face->film_text(film, picture.colour.of(*output)));
     return 0;
   }
   const Frame frame = [&](int moment) { return draw_episode_frame(*face, film, moment, style, *font); };

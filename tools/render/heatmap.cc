@@ -79,12 +79,12 @@ void name_as_paper(HeatFigure& figure) {
   }
 }
 
-std::string ansi(const HeatFigure& figure, const HeatmapStyle& style, int width) {
+std::string ansi(const HeatFigure& figure, const HeatmapStyle& style, TerminalColour colour, int width) {
   std::string text = style.title.empty() ? "" : style.title + "\n\n";
   for (const HeatPanel& panel : figure.panels) {
     if (&panel != &figure.panels[0]) text += '\n';
     if (!panel.title.empty()) text += panel.title + '\n';
-    text += terminal_matrix(panel.table, find_scheme(style.scheme), environment_colour(), width);
+    text += terminal_matrix(panel.table, find_scheme(style.scheme), colour, width);
   }
   return text;
 }
@@ -128,8 +128,7 @@ int heatmap(int argc, char** argv) {
     return figure;
   };
   if (picture.ansi) {
-    const int width = terminal_width(output.is_stdout() ? 1 : -1);
-    finish(output, ansi(read_figure(), style, width));
+    finish(output, ansi(read_figure(), style, picture.colour.of(output), picture.width(output)));
     return 0;
   }
   const Font font(picture.font);

@@ -319,6 +319,15 @@ bool Options::given(const char* name) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == name && e.given; });
 }
 
+std::string one_file(const Options& options, const char* option, const std::string& path,
+                     const std::vector<std::string>& operands) {
+  if (operands.empty()) return path;
+  if (options.given(option))
+    options.wrong(concat(quoted(path), " is given by --", option, ", ", quoted(operands[0]),
+                         " as an operand: expected one of them"));
+  return operands[0];
+}
+
 std::string Options::given_again(const std::vector<std::string>& without) const {
   std::string line = tool_;
   for (const auto& [entry, argument] : given_) {

@@ -57,6 +57,9 @@ class Options {
   // The tool and the options that were given, in their order, but for those named, as a shell reads them.
   std::string given_again(const std::vector<std::string>& without) const;
 
+  // Throws kUsage with the message and where to find help.
+  [[noreturn]] void wrong(const std::string& message) const;
+
   // The text of --help in lines of at most `width` columns where words allow.
   std::string usage(size_t width) const;
 
@@ -86,7 +89,6 @@ class Options {
   };
   Options& add(Kind kind, char letter, const std::string& name, const char* arg, const std::string& help,
                std::function<void(const std::string&)> set);
-  [[noreturn]] void wrong(const std::string& message) const;
   Found find(const std::string& name);
   void take_long(const std::string& word, Words& words);
   void take_letters(const std::string& word, Words& words);
@@ -95,6 +97,12 @@ class Options {
   std::vector<Entry> entries_;
   std::vector<Given> given_;
 };
+
+// The file that an option or an operand names, `path` where neither does. Throws kUsage where both do.
+std::string one_file(const Options& options, const char* option, const std::string& path,
+                     const std::vector<std::string>& operands);
+// A stream may be read from so many files.
+constexpr int kMostStreamFiles = 1000;
 
 // "30m", "90s", "2h", "45" (seconds) to seconds; "2e7" and "20000" to a count; a finite number. Throw
 // std::invalid_argument.

@@ -18,29 +18,28 @@ int number_of(const char* variable) {
   return text && parse_whole(text, value) && value > 0 ? value : 0;
 }
 
-// What a line may not be broken within.
-std::vector<std::string> unbroken_parts(const std::string& line) {
+// What a line may not be broken within: what stands in brackets, where it fits into a line, "< FILE", and a dash with
+// what is before it.
+std::vector<std::string> unbroken_parts(const std::string& line, size_t room) {
   std::vector<std::string> parts;
-  int depth = 0;
-  std::string part;
-  const auto end_part = [&] {
-    // "< FILE" is one part, and so is what comes before a dash.
+  const auto add = [&](const std::string& part) {
+    if (part.empty()) return;
     const bool joined = !parts.empty() && (part[0] == '-' || parts.back() == "<" || parts.back() == ">");
     if (joined)
       parts.back() += ' ' + part;
     else
       parts.push_back(part);
-    part.clear();
   };
-  for (const char c : line) {
-    if (c == ' ' && depth == 0) {
-      if (!part.empty()) end_part();
-      continue;
-    }
-    depth += c == '[' ? 1 : c == ']' && depth > 0 ? -1 : 0;
-    part += c;
+  for (size_t begin = 0; begin < line.size();) {
+    const size_t word_end = std::min(line.find(' ', begin), line.size());
+    size_t end = begin;
+    int depth = 0;
+    for (; end < line.size() && (line[end] != ' ' || depth > 0); ++end)
+      depth += line[end] == '[' ? 1 : line[end] == ']' ? -1 : 0;
+    if (end - begin > room) end = word_end;
+    add(line.substr(begin, end - begin));
+    begin = end + 1;
   }
-  if (!part.empty()) end_part();
   return parts;
 }
 
@@ -63,7 +62,7 @@ std::string wrapped(const std::string& text, size_t used, size_t indent, size_t 
       column = indent;
     }
     bool first = true;
-    for (const std::string& part : unbroken_parts(text.substr(begin, end - begin))) {
+    for (const std::string& part : unbroken_parts(text.substr(begin, end - begin), width - std::min(width, indent))) {
       if (!first && column + 1 + part.size() > width) {
         out += '\n' + std::string(indent, ' ');
         column = indent;

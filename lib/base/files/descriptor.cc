@@ -7,6 +7,8 @@
 
 #include <cerrno>
 #include <climits>
+#include <filesystem>
+#include <system_error>
 
 #include "base/error.h"
 #include "base/signals.h"
@@ -43,6 +45,17 @@ void open_standard_descriptors() {
 
 bool is_readable(int fd) { return was_opened_for(fd, O_RDONLY); }
 bool is_writable(int fd) { return was_opened_for(fd, O_WRONLY); }
+
+std::string file_behind(int fd) {
+  struct stat opened, named;
+  if (fstat(fd, &opened) != 0 || !S_ISREG(opened.st_mode)) return "";
+  std::error_code error;
+  const auto path = std::filesystem::read_symlink("/proc/self/fd/" + std::to_string(fd), error);
+  if (error || stat(path.c_str(), &named) != 0 || named.st_dev != opened.st_dev || named.st_ino != opened.st_ino)
+    return "";
+  const auto nearer = path.lexically_relative(std::filesystem::current_path(error));
+  return error || nearer.empty() || *nearer.begin() == ".." ? path.string() : nearer.string();
+}
 
 Descriptor open_to_read(const std::string& path) {
   // To open a pipe would wait for its writer, deaf to signals; so does wait_to_read(), but hears them.

@@ -33,6 +33,10 @@ void open_standard_descriptors();
 bool is_readable(int fd);
 bool is_writable(int fd);
 
+// The path of the regular file behind a descriptor, from the working directory where it lies below that; "" where there
+// is no such file, or none of that name any more.
+std::string file_behind(int fd);
+
 // Opens a file, a device or a pipe to read it; without a writer a pipe is opened too. Empty, with errno, where it
 // cannot be opened.
 Descriptor open_to_read(const std::string& path);

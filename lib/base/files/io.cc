@@ -36,20 +36,44 @@ std::string fit_for_terminal(std::string_view text) {
 
 Input::Input(int fd, std::string name) : fd_(fd), name_(std::move(name)), buffer_(kBuffer) {}
 
-Input::Input(const std::string& path) : Input(STDIN_FILENO, path == "-" ? "standard input" : path) {
-  if (path == "-") {
-    if (isatty(fd_)) fail(Exit::kUsage, kTerminalInput, "standard input is a terminal: expected a stream or a file");
-    if (!is_readable(fd_)) fail(Exit::kNoInput, "cannot read standard input: it is not open for reading");
-  } else {
-    opened_ = open_to_read(path);
-    if (!opened_) fail(Exit::kNoInput, "cannot open '", path, "': ", std::strerror(errno));
-    fd_ = opened_.get();
-    struct stat status;
-    if (fstat(fd_, &status) == 0 && S_ISDIR(status.st_mode))
-      fail(Exit::kNoInput, "cannot open '", path, "': it is a folder");
+Input::Input(const std::string& path) : Input(std::vector<std::string>{path}) {}
+
+Input::Input(const std::vector<std::string>& paths) : Input(-1, "") {
+  if (std::count(paths.begin(), paths.end(), "-") > 1) fail(Exit::kUsage, "standard input can be read only once");
+  for (const std::string& path : paths.empty() ? std::vector<std::string>{"-"} : paths) {
+    Source source{{}, STDIN_FILENO, path == "-" ? "standard input" : path};
+    if (path == "-") {
+      if (isatty(source.fd))
+        fail(Exit::kUsage, kTerminalInput, "standard input is a terminal: expected a stream or a file");
+      if (!is_readable(source.fd)) fail(Exit::kNoInput, "cannot read standard input: it is not open for reading");
+    } else {
+      source.opened = open_to_read(path);
+      if (!source.opened) fail(Exit::kNoInput, "cannot open '", path, "': ", std::strerror(errno));
+      source.fd = source.opened.get();
+      struct stat status;
+      if (fstat(source.fd, &status) == 0 && S_ISDIR(status.st_mode))
+        fail(Exit::kNoInput, "cannot open '", path, "': it is a folder");
+    }
+    use_as_input(path, FileIdentity::of(source.fd));
+    next_.push_back(std::move(source));
   }
-  use_as_input(path, FileIdentity::of(fd_));
+  files_ = next_.size();
+  std::reverse(next_.begin(), next_.end());
+  go_on();
 }
+
+// Turns to the next file.
+bool Input::go_on() {
+  if (next_.empty()) return false;
+  opened_ = std::move(next_.back().opened);
+  fd_ = next_.back().fd;
+  name_ = next_.back().name;
+  next_.pop_back();
+  lines_ = offset_ = 0;
+  return true;
+}
+
+std::string Input::whole_name() const { return files_ == 1 ? name_ : concat("the stream of ", files_, " files"); }
 
 bool Input::fill() {
   begin_ = end_ = 0;
@@ -70,8 +94,9 @@ bool Input::line(std::string& out, size_t limit) {
   out.clear();
   while (true) {
     if (begin_ == end_ && !fill()) {
-      if (out.empty()) return false;
-      break;
+      if (!out.empty()) break;
+      if (!go_on()) return false;
+      continue;
     }
     const char* start = buffer_.data() + begin_;
     const auto* newline = static_cast<const char*>(std::memchr(start, '\n', end_ - begin_));

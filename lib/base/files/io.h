@@ -20,13 +20,16 @@ class Input {
   // Throws kNoInput when the file cannot be opened, kUsage when stdin is a terminal (kTerminalInput), or when the file
   // is written by the same command (file_uses.h).
   explicit Input(const std::string& path);
+  // Reads the lines of several files, one after the other, as line() gives them; all are opened here. No path is `-`,
+  // which may be there once (kUsage).
+  explicit Input(const std::vector<std::string>& paths);
   // Reads from an open descriptor, which stays open; `name` is for messages.
   Input(int fd, std::string name);
   Input(const Input&) = delete;
   Input& operator=(const Input&) = delete;
 
-  // The next line without its newline (a missing last newline is accepted); false at the end. A line longer than
-  // `limit` bytes is an error (kData).
+  // The next line without its newline (a missing last newline is accepted); false at the end, of the last file where
+  // there are several. A line longer than `limit` bytes is an error (kData).
   bool line(std::string& out, size_t limit = 16 << 20);
   // Up to `size` bytes; fewer only at the end of the input.
   size_t read(void* to, size_t size);
@@ -34,8 +37,9 @@ class Input {
   std::string rest(size_t limit);
 
   const std::string& name() const { return name_; }  // for messages: the path, or "standard input"
-  uint64_t line_number() const { return lines_; }    // of the line returned last, from 1
-  uint64_t offset() const { return offset_; }        // bytes taken so far
+  std::string whole_name() const;                    // the same, or "the stream of 3 files"
+  uint64_t line_number() const { return lines_; }    // of the line returned last, from 1; in its file
+  uint64_t offset() const { return offset_; }        // bytes taken so far; of the file
 
   // Throws kData with "name: line N: ..." in front of the arguments.
   [[noreturn]] void bad_line(const std::string& message) const;
@@ -43,10 +47,18 @@ class Input {
   [[noreturn]] void bad_line(const Error& error) const;
 
  private:
+  struct Source {
+    Descriptor opened;
+    int fd;
+    std::string name;
+  };
   bool fill();
+  bool go_on();
   Descriptor opened_;
   int fd_;
   std::string name_;
+  std::vector<Source> next_;  // the last one first
+  size_t files_ = 1;
   std::vector<char> buffer_;
   size_t begin_ = 0, end_ = 0;
   uint64_t lines_ = 0, offset_ = 0;

@@ -1,6 +1,5 @@
 #include "draw/terminal/terminal.h"
 
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -87,18 +86,17 @@ std::string head(const HeatTable& table, size_t label, size_t cell) {
 
 }  // namespace
 
-TerminalColour environment_colour() {
-  const std::string term = variable("TERM"), depth = variable("COLORTERM");
-  if (!variable("NO_COLOR").empty() || term.empty() || term == "dumb") return TerminalColour::kNone;
+TerminalColour forced_colour() {
+  const std::string depth = variable("COLORTERM");
   return depth == "truecolor" || depth == "24bit" ? TerminalColour::kTrue : TerminalColour::k256;
 }
 
-TerminalColour terminal_colour(int fd) { return isatty(fd) ? environment_colour() : TerminalColour::kNone; }
-
-int terminal_width(int fd) {
-  winsize size{};
-  return isatty(fd) && ioctl(fd, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+TerminalColour environment_colour() {
+  const std::string term = variable("TERM");
+  return !variable("NO_COLOR").empty() || term.empty() || term == "dumb" ? TerminalColour::kNone : forced_colour();
 }
+
+TerminalColour terminal_colour(int fd) { return isatty(fd) ? environment_colour() : TerminalColour::kNone; }
 
 std::string ground_code(Rgb ground, TerminalColour colour) {
   if (colour == TerminalColour::kNone) return "";

@@ -15,8 +15,8 @@ enum class TerminalColour { kNone, k256, kTrue };  // 24 bits where COLORTERM sa
 TerminalColour terminal_colour(int fd);
 // As above, but taking it for a terminal.
 TerminalColour environment_colour();
-// Columns of the terminal, 0 where `fd` is no terminal.
-int terminal_width(int fd);
+// Colours asked for in so many words, whatever the output is and NO_COLOR says: 256 where COLORTERM does not say more.
+TerminalColour forced_colour();
 
 // The escape sequence for a block of this colour with readable text on it.
 std::string ground_code(Rgb ground, TerminalColour colour);

@@ -1,6 +1,7 @@
 // The summary of a success matrix over its seen and unseen pairs.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,8 +45,10 @@ struct GroupSummary {
 // Groups in the order of their first row. Rows are taken as they are: merge_matrices first keeps double counting out.
 std::vector<GroupSummary> summarise(const Matrix& matrix);
 
-// Aligned text for people, and a table with a row per group and subset.
-std::string summary_text(const std::vector<GroupSummary>& groups);
+// Aligned text for people, and a table with a row per group and subset. `paint` may put colour on the name of a subset
+// as it stands at the beginning of its line.
+using PaintName = std::function<std::string(const SubsetSummary& subset, const std::string& name)>;
+std::string summary_text(const std::vector<GroupSummary>& groups, const PaintName& paint = nullptr);
 void write_summary(Output& output, const std::vector<GroupSummary>& groups);
 
 }  // namespace synpo

@@ -18,7 +18,7 @@ std::string cell(const Measure& measure, const char* kind, bool several) {
 
 }  // namespace
 
-std::string summary_text(const std::vector<GroupSummary>& groups) {
+std::string summary_text(const std::vector<GroupSummary>& groups, const PaintName& paint) {
   std::string text;
   bool any_several = false;
   const MeasureKind& success = find_measure("success");
@@ -40,7 +40,15 @@ std::string summary_text(const std::vector<GroupSummary>& groups) {
       row.push_back(cell(subset.timeouts, "timeouts", several));
       rows.push_back(std::move(row));
     }
-    text += group.heading + '\n' + table_text(rows) + '\n';
+    text += group.heading + '\n';
+    std::string table = table_text(rows);
+    size_t line = 0;
+    for (size_t i = 0; paint && i < group.subsets.size(); ++i) {
+      line = table.find('\n', line) + 1;
+      const std::string& name = group.subsets[i].name;
+      table.replace(line, name.size(), paint(group.subsets[i], name));
+    }
+    text += table + '\n';
   }
   text += "k of n: successes of episodes, all pairs and runs together.\n";
   text += "Interval: Wilson's, for k of n, over episodes: what these runs would do again on these pairs.\n";

@@ -85,26 +85,37 @@ tasks() { ansi "$@" | awk '/^t/ { print $1 }' | tr '\n' ' '; }
     ansi --panels method A=all.tsv B=all.tsv | grep -qx 'B, mlp'
 }
 
-@test "--ansi: colours as the terminal has them, characters with NO_COLOR, on a terminal and in a pipe" {
+@test "--ansi: colours as the terminal has them, characters with NO_COLOR and in a pipe; --colour decides" {
     matrix 3 >m.tsv
     export TERM=xterm COLORTERM=truecolor
-    synpo-render heatmap --ansi m.tsv >true
+    synpo-render heatmap --ansi --colour always m.tsv >true
     grep -q "$(printf '\033\\[38;5;16;48;2;')" true
-    COLORTERM='' synpo-render heatmap --ansi m.tsv >cube
+    COLORTERM='' synpo-render heatmap --ansi --colour always m.tsv >cube
     grep -q "$(printf '\033\\[38;5;16;48;5;')" cube
     TERM=dumb synpo-render heatmap --ansi m.tsv >dumb
     NO_COLOR=1 synpo-render heatmap --ansi m.tsv | cmp dumb -
+    synpo-render heatmap --ansi m.tsv | cmp dumb -
+    run -0 on_terminal "NO_COLOR=1 synpo-render heatmap --ansi m.tsv"
+    cmp dumb "$BATS_TEST_TMPDIR/err"
+    run -0 on_terminal "TERM=dumb synpo-render heatmap --ansi m.tsv"
+    cmp dumb "$BATS_TEST_TMPDIR/err"
+    run -0 on_terminal "synpo-render heatmap --ansi --color never m.tsv"
+    cmp dumb "$BATS_TEST_TMPDIR/err"
     synpo-matrix show --colour never m.tsv | cmp dumb -
     synpo-matrix show --colour always m.tsv | cmp true -
     run -0 on_terminal "synpo-render heatmap --ansi m.tsv"
     cmp true "$BATS_TEST_TMPDIR/err"
     run -0 on_terminal "synpo-render map --ansi map1"
-    synpo-render map --ansi map1 | cmp - "$BATS_TEST_TMPDIR/err"
+    synpo-render map --ansi --colour always map1 | cmp - "$BATS_TEST_TMPDIR/err"
     NO_COLOR=1 synpo-render map --ansi >maps
     [ "$(grep -c '^#' maps)" -eq 160 ]
     run ! grep -q "$(printf '\033')" maps
     synpo-render heatmap --ansi -o out m.tsv
+    cmp dumb out
+    synpo-render heatmap --ansi --colour always -o out m.tsv
     cmp true out
+    fails 64 synpo-render heatmap --colour always m.tsv
+    says "--colour is for --ansi"
     fails 64 synpo-render heatmap --ansi --margins m.tsv
     says "--margins is for a picture, not for --ansi"
     fails 64 synpo-render map --ansi --scale 1

@@ -16,7 +16,7 @@ widest() { awk '{ if (length($0) > most) most = length($0) } END { print most + 
         for command in "synpo-gen-expert -n 20000 -o x" \
             "synpo-eval -o x -n 200 -p two.tsv -c a.ckpt" \
             "synpo-train --batch-states 64 --fill 20 --running 64 --memory 30 -n 12 --report 1 -o x <e.jsonl" \
-            "synpo-finetune ppo --init random --lanes 16 --steps 1000 --report 1 -o x"; do
+            "synpo-finetune ppo --init random -p two.tsv --lanes 16 --steps 1000 --report 1 -o x"; do
             bar "$columns" "$command"
             [ "$(wc -l <"$BATS_TEST_TMPDIR/bar")" -gt 0 ]
             [ "$(widest)" -lt "$columns" ] || complain "$columns: $command: $(cat "$BATS_TEST_TMPDIR/bar")"

@@ -173,8 +173,8 @@ TEST(Options, HelpFitsTheWidth) {
             "        write what comes out to FILE,\n"
             "        which is not there yet\n"
             "  -f, --force\n"
-            "        write to a terminal too, where -o\n"
-            "        names none\n");
+            "        write to a terminal too,\n"
+            "        where -o names none\n");
 }
 
 TEST(Options, WhatWasGivenIsGivenAgain) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/cli/screen.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
 #include "helpers/heat_tables.h"
@@ -118,9 +119,13 @@ TEST(Terminal, TheEnvironmentDecides) {
   EXPECT_EQ(colour("xterm", "truecolor", "1"), TerminalColour::kNone);
   EXPECT_EQ(colour("dumb", "truecolor", ""), TerminalColour::kNone);
   EXPECT_EQ(colour("", "", ""), TerminalColour::kNone);
+  EXPECT_EQ(forced_colour(), TerminalColour::k256);
+  setenv("NO_COLOR", "1", 1);
+  setenv("COLORTERM", "24bit", 1);
+  EXPECT_EQ(forced_colour(), TerminalColour::kTrue);
   for (const char* name : {"TERM", "COLORTERM", "NO_COLOR"}) unsetenv(name);
   EXPECT_EQ(terminal_colour(-1), TerminalColour::kNone);
-  EXPECT_EQ(terminal_width(-1), 0);
+  EXPECT_EQ(screen_size(-1).columns, 0);
 }
 
 }  // namespace

@@ -425,7 +425,8 @@ TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   const Checkpoint planned = describe_model(model, small_world());
   EXPECT_FALSE(lies_in_files(planned));
   EXPECT_EQ(planned.extractor, small_world().extractor());
-  EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }), "64 the checkpoint holds its environments");
+  EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }),
+            "64 the checkpoint holds its environments, and its 'FloorPlan1' is not the one of 'kitchen'");
   EXPECT_TRUE(fails_for(kNeedsNoSource, [&] { world_of(planned, "kitchen"); }));
 }
 
