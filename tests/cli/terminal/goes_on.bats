@@ -12,10 +12,10 @@ teardown() {
 interrupts() {
     local status=0 i
     rm -f log.tsv
-    env --default-signal=INT "$@" --log log.tsv --report 1 2>err 3>&- &
+    env --default-signal=INT "$@" --log log.tsv --report 1 <&0 2>err 3>&- &
     pid=$!
     for ((i = 0; i < 600; ++i)); do
-        [ "$(wc -l 2>/dev/null <log.tsv)" -lt 2 ] 2>/dev/null || break
+        [ ! -e log.tsv ] || [ "$(wc -l <log.tsv)" -lt 2 ] || break
         kill -0 "$pid" || complain "it ended: $(cat err)"
         sleep 0.05
     done
@@ -31,16 +31,16 @@ command_of() { sed -n "s/^$1: this goes on[^:]*: //p" err; }
 TRAINING=(synpo-train --batch-states 64 --fill 20 --running 64 --memory 30)
 
 @test "after Ctrl-C a training with --save names the command that goes on, and that command does" {
-    interrupts "${TRAINING[@]}" -p pairs.tsv -s 3 -n 400 --lr 0.001 --no-cosine --save 'my run.ckpt' -o out.ckpt e.jsonl
+    interrupts "${TRAINING[@]}" -p pairs.tsv -s 3 -n 60 --lr 0.001 --no-cosine --save 'my run.ckpt' -o out.ckpt e.jsonl
     command=$(command_of synpo-train)
-    [ "$command" = "synpo-train -n 400 --save 'my run.ckpt' -o out.ckpt --log log.tsv --report 1 --resume 'my run.ckpt'\
+    [ "$command" = "synpo-train -n 60 --save 'my run.ckpt' -o out.ckpt --log log.tsv --report 1 --resume 'my run.ckpt'\
  e.jsonl" ]
     done_before=$(described 'my run.ckpt' .updates)
     [ "$done_before" -ge 1 ]
-    bash -c "${command/-n 400/-q -n $((done_before + 2))}"
+    bash -c "${command/-n 60/-q -n $((done_before + 2))}"
     [ "$(described out.ckpt .updates)" -eq $((done_before + 2)) ]
     # To the same bits as a run that was not stopped.
-    "${TRAINING[@]}" -q -p pairs.tsv -s 3 -n 400 --lr 0.001 --no-cosine --save whole.ckpt -o whole.out e.jsonl &
+    "${TRAINING[@]}" -q -p pairs.tsv -s 3 -n 60 --lr 0.001 --no-cosine --save whole.ckpt -o whole.out e.jsonl &
     pid=$!
     wait "$pid"
     pid=

@@ -2,8 +2,8 @@ load ../common
 
 setup_file() {
     make_inputs
-    head -n 25 e.jsonl >first.jsonl
-    tail -n +26 e.jsonl >second.jsonl
+    head -n 15 e.jsonl >first.jsonl
+    tail -n +16 e.jsonl >second.jsonl
 }
 setup() { set_up e.jsonl first.jsonl second.jsonl pairs.tsv two.tsv a.ckpt m.tsv; }
 

@@ -20,7 +20,7 @@ TEST(Screen, TextIsBrokenAtBlanksAndIndented) {
 TEST(Screen, WhatBelongsTogetherIsNotBroken) {
   // A line that began with a dash would look like an option.
   EXPECT_EQ(wrapped("instead of -n: all", 0, 2, 12), "instead\n  of -n: all");
-  EXPECT_EQ(wrapped("tool [-n N | -t LIMIT] FILE", 0, 2, 12), "tool\n  [-n N | -t LIMIT]\n  FILE");
+  EXPECT_EQ(wrapped("tool [-n N | -t LIMIT] FILE", 0, 2, 19), "tool\n  [-n N | -t LIMIT]\n  FILE");
   EXPECT_EQ(wrapped("tool < IN > OUT", 0, 2, 10), "tool < IN\n  > OUT");
 }
 

@@ -426,7 +426,7 @@ TEST(SceneFolder, ACheckpointGoesWithItsFeaturesAlone) {
   EXPECT_FALSE(lies_in_files(planned));
   EXPECT_EQ(planned.extractor, small_world().extractor());
   EXPECT_EQ(thrown([&] { world_of(planned, "kitchen"); }),
-            "64 the checkpoint holds its environments, and its 'FloorPlan1' is not the one of 'kitchen'");
+            "64 the checkpoint holds its environments, and 'FloorPlan1' of 'kitchen' is none of them");
   EXPECT_TRUE(fails_for(kNeedsNoSource, [&] { world_of(planned, "kitchen"); }));
 }
 
