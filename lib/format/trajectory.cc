@@ -188,14 +188,14 @@ bool TrajectoryLines::next(std::string& line) {
     return true;
   }
   if (ends_ > 0 && said_ != count_)
-    fail(Exit::kData, input_.name(), ": found ", count_, " trajectories, expected ", said_,
+    fail(Exit::kData, input_.whole_name(), ": found ", count_, " trajectories, expected ", said_,
          ends_ == 1 ? " as its end says" : " as its ends say", ": lines are missing, or some were chosen");
   return false;
 }
 
 void TrajectoryLines::check_end() const {
   if (ends_ == 0)
-    fail(Exit::kData, kNoEnd, input_.name(), ": it ended after ", count_,
+    fail(Exit::kData, kNoEnd, input_.whole_name(), ": it ended after ", count_,
          " trajectories, expected a last line that says its end");
 }
 

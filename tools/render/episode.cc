@@ -33,9 +33,10 @@ using namespace synpo;
 namespace {
 
 Trajectory read_trajectory(Input& input, int64_t line) {
+  TrajectoryLines lines(input);
   std::string text;
   for (int64_t before = 0; before < line; ++before)
-    if (!input.line(text))
+    if (!lines.next(text))
       fail(Exit::kData, input.name(), ": it ends after ", before, before == 1 ? " line" : " lines", ", before line ",
            line);
   try {
