@@ -45,11 +45,13 @@ void PictureOptions::add_to(Options& options, std::vector<std::string> formats) 
       .text(0, "font", "FILE", "TrueType font instead of DejaVu Sans", font);
 }
 
-void PictureOptions::add_ansi(Options& options) {
-  options.flag(0, "ansi", "coloured blocks for a terminal, as text, instead of a picture", ansi);
+void PictureOptions::add_ansi(Options& options, const std::string& help) {
+  options.flag(0, "ansi", help, ansi);
+  colour.add_to(options);
 }
 
 void PictureOptions::settle(const Options& options, std::vector<const char*> not_ansi) {
+  if (!ansi && options.given("colour")) fail(Exit::kUsage, "--colour is for --ansi");
   not_ansi.insert(not_ansi.end(), {"format", "scale", "font"});
   for (const char* option : not_ansi)
     if (ansi && options.given(option)) fail(Exit::kUsage, "--", option, " is for a picture, not for --ansi");
