@@ -45,7 +45,7 @@ cairo_font_face_t* font_face(const Font& font) {
   if (!cairo_font_face_get_user_data(face, &key) &&
       cairo_font_face_set_user_data(face, &key, hold.get(), [](void* held) { delete static_cast<Hold*>(held); }) ==
           CAIRO_STATUS_SUCCESS)
-    hold.release();
+    static_cast<void>(hold.release());  // the font face has it
   return face;
 }
 

@@ -1,14 +1,13 @@
 // Drawing with cairo: pixels and PDF.
 #pragma once
+#include <cairo.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "base/rgb.h"
 #include "draw/canvas/surface.h"
-
-typedef struct _cairo cairo_t;
-typedef struct _cairo_surface cairo_surface_t;
 
 namespace synpo {
 
