@@ -47,8 +47,15 @@ DEB_PACKAGES := debhelper lintian dpkg-dev fakeroot pkg-config
 LIBDIR    ?= lib
 PYTHONDIR ?= share/synpo/python
 HEADERS   := $(shell find lib -name '*.h' -not -path 'lib/torch/*')
+# Debian's zsh looks for its own packages' completions elsewhere than for others.
+ZSH_DIR    = share/zsh/$(if $(filter /usr,$(PREFIX)),vendor-completions,site-functions)
+COMPLETIONS := $(TOOLS:%=$(B)/completions/bash/%) $(TOOLS:%=$(B)/completions/zsh/_%) \
+             $(TOOLS:%=$(B)/completions/fish/%.fish)
 INSTALLED  = $(foreach tool,$(TOOLS),$(B)/$(tool):bin/$(tool)) \
              $(B)/libsynpo.a:$(LIBDIR)/libsynpo.a $(B)/synpo.pc:$(LIBDIR)/pkgconfig/synpo.pc \
+             $(foreach tool,$(TOOLS),$(B)/completions/bash/$(tool):share/bash-completion/completions/$(tool) \
+                 $(B)/completions/zsh/_$(tool):$(ZSH_DIR)/_$(tool) \
+                 $(B)/completions/fish/$(tool).fish:share/fish/vendor_completions.d/$(tool).fish) \
              $(foreach header,$(HEADERS),$(header):$(header:lib/%=include/synpo/%)) \
              $(B)/libsynpo_torch.so:lib/synpo/libsynpo_torch.so \
              $(foreach module,$(wildcard python/*.py),$(module):$(PYTHONDIR)/$(notdir $(module))) \
@@ -101,8 +108,8 @@ ifneq ($(filter deps-torch,$(MAKECMDGOALS)),)
 $(TORCH_OBJ): | deps-torch
 endif
 
-.PHONY: all lib torch check test lint bench demo gallery deps deps-torch deps-deb deb install uninstall clean check-torch \
-    gpu-kit dist help
+.PHONY: all completions lib torch check test lint bench demo gallery deps deps-torch deps-deb deb install uninstall \
+    clean check-torch gpu-kit dist help
 all: $(B)/told
 # So that make -q all says whether anything is to be built.
 $(B)/told: $(TOOLS:%=$(B)/%)
@@ -239,6 +246,16 @@ gpu-kit:
 deps-torch:
 	@scripts/deps $(TORCH_PACKAGES)
 
+# Completions of the shells, from each program's table of options.
+completions: $(COMPLETIONS)
+complete = $(Q)mkdir -p $(@D) && scripts/completions $(1) $< >$@.part && mv $@.part $@
+$(B)/completions/bash/%: $(B)/% scripts/completions
+	$(call complete,bash)
+$(B)/completions/zsh/_%: $(B)/% scripts/completions
+	$(call complete,zsh)
+$(B)/completions/fish/%.fish: $(B)/% scripts/completions
+	$(call complete,fish)
+
 # For pkg-config. The library is static: what draws needs pkg-config --static.
 $(B)/synpo.pc: FORCE
 	@mkdir -p $(@D)
@@ -246,7 +263,7 @@ $(B)/synpo.pc: FORCE
 	    'Name: synpo' 'Description: policies that transfer across environments and tasks' 'Version: $(VERSION)' \
 	    'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lsynpo -pthread' 'Libs.private: $(DRAW_LIBS)' > $@
 
-install: all $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
+install: all completions $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
 	$(Q)set -e; for file in $(INSTALLED); do \
 	    from=$${file%%:*} to=$${file#*:} mode=644; \
 	    case $$to in bin/*) mode=755 ;; *.a | *.so) [ -e "$$from" ] || continue ;; esac; \
@@ -279,7 +296,7 @@ help:
 	    demo 'a small training and its pictures, in $(B)/demo' \
 	    'check, test' 'all tests' \
 	    lint 'look at the sources without running them' \
-	    install 'programs, pages, library and synpo.py, under PREFIX=/usr/local' \
+	    install 'programs, pages, completions, library and synpo.py, under PREFIX=/usr/local' \
 	    uninstall 'take them away again' \
 	    lib 'the library alone, $(B)/libsynpo.a' \
 	    deps-torch 'install what torch needs' \

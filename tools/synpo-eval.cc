@@ -22,6 +22,7 @@
 #include "play/episode.h"
 #include "play/evaluate.h"
 #include "play/model.h"
+#include "play/world_factory.h"
 #include "policy/policy.h"
 #include "world/world.h"
 
@@ -92,6 +93,7 @@ int body(int argc, char** argv) {
       .text('p', "pairs", "FILE", "pairs to run, all its rows: TSV env, task (all pairs)", pairs_path)
       .text('w', "world", "WORLD", "needed as kitchen:DIR, where the checkpoint's kitchens lie in files of their own",
             world_name)
+      .suggest(world_kinds())
       .integer('n', "count", "N", "episodes of every pair", plan.count, 1, 100000000)
       .integer(0, "first-episode", "N", "number of the first of them: shards of one evaluation merge", plan.first, 0,
                1000000000000)

@@ -64,6 +64,7 @@ int gen_expert(int argc, char** argv) {
       .integer(0, "window", "R", "window radius noted in the records (0: blind)", stream.window, 0, 16)
       .flag(0, "end", "a last line says how many trajectories there are (--relabel: if it did so there)", says_end)
       .text('w', "world", "WORLD", alternatives(world_names()), world_name)
+      .suggest(world_kinds())
       .text('o', "output", "FILE", "write to FILE", output_path)
       .quiet(quiet);
   const std::vector<std::string> files = options.parse(argc, argv, 0, kMostStreamFiles);

@@ -47,6 +47,7 @@ int body(int argc, char** argv) {
             s.pairs)
       .choice('m', "method", "NAME", methods, s.method, method_names())
       .text('w', "world", "WORLD", alternatives(world_names()), s.world)
+      .suggest(world_kinds())
       .text(0, "resume", "FILE", "go on from a checkpoint, on the same stream, to the same bits", s.resume)
       .text(0, "init", "FILE", "start from a checkpoint's weights, all else fresh", s.init)
       .integer(0, "expect", "N", "a stream of fewer than N trajectories is an error", s.expect, 0, INT64_MAX)

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "base/text.h"
+
 namespace synpo {
 namespace {
 
@@ -35,6 +37,13 @@ Linear from_oklch(double lightness, double chroma, double hue_degrees) {
 
 uint8_t to_byte(double linear) { return uint8_t(std::lround(255 * to_srgb(std::clamp(linear, 0.0, 1.0)))); }
 
+constexpr Scheme kSchemes[] = {
+    {"safe", {255, 0.14}, {59, 0.13}, {160, 0.02}},
+    {"purple-red", {305, 0.18}, {24, 0.165}, {250, 0.02}},
+    {"blue-red", {258, 0.15}, {24, 0.165}, {160, 0.02}},
+    {"figure8", {305, 0.18}, {24, 0.165}, {24, 0.165}},
+};
+
 }  // namespace
 
 Rgb ramp_colour(const Ramp& ramp, double rate) {
@@ -53,15 +62,15 @@ Rgb ramp_colour(const Ramp& ramp, double rate) {
 }
 
 const Scheme& find_scheme(const std::string& name) {
-  static const Scheme schemes[] = {
-      {"safe", {255, 0.14}, {59, 0.13}, {160, 0.02}},
-      {"purple-red", {305, 0.18}, {24, 0.165}, {250, 0.02}},
-      {"blue-red", {258, 0.15}, {24, 0.165}, {160, 0.02}},
-      {"figure8", {305, 0.18}, {24, 0.165}, {24, 0.165}},
-  };
-  for (const Scheme& scheme : schemes)
+  for (const Scheme& scheme : kSchemes)
     if (name == scheme.name) return scheme;
-  throw std::invalid_argument("expected safe, purple-red, blue-red or figure8");
+  throw std::invalid_argument("expected " + alternatives(scheme_names()));
+}
+
+std::vector<std::string> scheme_names() {
+  std::vector<std::string> names;
+  for (const Scheme& scheme : kSchemes) names.emplace_back(scheme.name);
+  return names;
 }
 
 double luminance(Rgb colour) {

@@ -1,6 +1,7 @@
 // Colours of the pictures: ramps on which darker means better, and inks that can be read on them.
 #pragma once
 #include <string>
+#include <vector>
 
 #include "base/rgb.h"
 #include "stats/matrix/heat_table.h"
@@ -25,6 +26,7 @@ struct Scheme {
 // "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figure 6), "blue-red" (Figures 4 and 5),
 // "figure8" (part Q in purple, all else in red). Throws std::invalid_argument for any other name.
 const Scheme& find_scheme(const std::string& name);
+std::vector<std::string> scheme_names();
 
 // The ramp of a group of the table; a grey one for all pairs (-1).
 const Ramp& group_ramp(const HeatTable& table, int group, const Scheme& scheme);
@@ -43,6 +45,9 @@ double luminance(Rgb colour);
 Rgb time_colour(double share);
 // Of a step, from 1, of so many.
 Rgb step_colour(int step, int steps);
+
+// The rate whose shade stands for a kind of pairs where there are no rates.
+constexpr double kSplitShade = 0.65;
 
 constexpr Rgb kInk = {33, 37, 41};        // text
 constexpr Rgb kSoftInk = {95, 101, 108};  // captions, axis titles

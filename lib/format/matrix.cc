@@ -45,8 +45,12 @@ const char* const kColumns[] = {"run",           "world",  "window", "method", "
 // A reader and the positions of the columns that this build knows; -1 where the file has no such column.
 class RowReader {
  public:
-  explicit RowReader(Input& input) : reader_(input) {
-    for (const char* name : {"env", "task", "episodes", "successes"}) reader_.need(name);
+  RowReader(Input& input, bool or_pairs) : reader_(input) {
+    const auto has = [&](const char* name) { return reader_.find(name) >= 0; };
+    const bool pairs = or_pairs && has("seen") && !has("episodes") && !has("successes");
+    for (const char* name : {"env", "task"}) reader_.need(name);
+    if (!pairs)
+      for (const char* name : {"episodes", "successes"}) reader_.need(name);
     for (size_t i = 0; i < reader_.columns().size(); ++i) {
       const std::string& name = reader_.columns()[i];
       if (std::find(std::begin(kColumns), std::end(kColumns), name) == std::end(kColumns)) extra_.push_back(int(i));
@@ -137,8 +141,8 @@ std::string run_key(const MatrixRow& row) {
   return key;
 }
 
-Matrix read_matrix(Input& input) {
-  RowReader reader(input);
+Matrix read_matrix(Input& input, bool or_pairs) {
+  RowReader reader(input, or_pairs);
   Matrix matrix;
   matrix.has_part = reader.has_part();
   matrix.extra_columns = reader.extra_columns();

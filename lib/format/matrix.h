@@ -67,7 +67,9 @@ std::string run_key(const MatrixRow& row);
 // (successes + wrong + timeouts > episodes; no episode), a pair both seen and new, a repeated row (run_key, eval_seed,
 // env, task, first_episode), NaN, invalid UTF-8, no row, or more than kMatrixRows. Row i of the result stood in line
 // i + 2.
-Matrix read_matrix(Input& input);
+//
+// With `or_pairs` a file of pairs that says which are seen (pairs.h) is read too: rows without an episode.
+Matrix read_matrix(Input& input, bool or_pairs = false);
 // `reward`, `temperature`, `new` and `env_hash` are columns where a row has something to say there. Throws kData for
 // more rows, columns or fields than are read.
 void write_matrix(Output& output, const Matrix& matrix);

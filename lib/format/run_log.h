@@ -58,10 +58,12 @@ enum class RunLogAxis { kUpdates, kStates, kMinutes };
 struct RunLogTable {
   std::vector<double> x;                     // rises from row to row
   std::vector<std::vector<double>> columns;  // as asked for, x.size() each; NaN for NA
+  std::vector<std::vector<double>> others;  // the same of the columns that need not be there; empty for one that is not
 };
 
-// Needs the column update, those of the axis, and `columns`. Throws kData, with the place, for anything that is no such
-// log.
-RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns);
+// Needs the column update, those of the axis, and `columns`, but not `others`. Throws kData, with the place, for
+// anything that is no such log. Of one that is `growing`, a row that is still being written is passed over.
+RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns,
+                         const std::vector<std::string>& others = {}, bool growing = false);
 
 }  // namespace synpo

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 #include <limits>
 
 #include "base/error.h"
@@ -8,7 +9,9 @@
 namespace synpo {
 namespace {
 
-bool is_rate(const std::string& column) { return column.ends_with("_success") || column.starts_with("right_"); }
+bool is_rate(const std::string& column) {
+  return column.ends_with("success") || column.starts_with("right_") || column == "wrong";
+}
 
 double value(const TsvReader& reader, int column) {
   const std::string& name = reader.columns()[column];
@@ -50,17 +53,19 @@ class Clock {
 
 }  // namespace
 
-RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns) {
-  TsvReader reader(input);
+RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns,
+                         const std::vector<std::string>& others, bool growing) {
+  TsvReader reader(input, growing);
   const int update_column = reader.need("update");
   const int states_column = axis == RunLogAxis::kUpdates ? -1 : reader.need("states");
   std::optional<Clock> clock;
   if (axis == RunLogAxis::kMinutes) clock.emplace(reader);
   std::vector<int> places;
   for (const std::string& column : columns) places.push_back(reader.need(column));
+  for (const std::string& column : others) places.push_back(reader.find(column));
 
   RunLogTable table;
-  table.columns.resize(columns.size());
+  std::vector<std::vector<double>> all(places.size());
   std::vector<int64_t> updates, states;
   while (reader.next()) {
     const int64_t update = reader.integer(update_column, 0, INT64_MAX);
@@ -68,7 +73,8 @@ RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::s
     while (!updates.empty() && updates.back() >= update) {
       updates.pop_back();
       table.x.pop_back();
-      for (auto& column : table.columns) column.pop_back();
+      for (auto& column : all)
+        if (!column.empty()) column.pop_back();
       if (!states.empty()) states.pop_back();
     }
     double x = double(update);
@@ -83,8 +89,12 @@ RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::s
     }
     updates.push_back(update);
     table.x.push_back(x);
-    for (size_t i = 0; i < places.size(); ++i) table.columns[i].push_back(value(reader, places[i]));
+    for (size_t i = 0; i < places.size(); ++i)
+      if (places[i] >= 0) all[i].push_back(value(reader, places[i]));
   }
+  const auto middle = all.begin() + std::ptrdiff_t(columns.size());
+  table.columns.assign(all.begin(), middle);
+  table.others.assign(middle, all.end());
   return table;
 }
 

@@ -20,7 +20,7 @@ std::string name_bad_byte(std::string_view line, size_t at) {
 
 }  // namespace
 
-TsvReader::TsvReader(Input& input) : input_(input) {
+TsvReader::TsvReader(Input& input, bool growing) : input_(input), growing_(growing) {
   if (!row(columns_)) fail(Exit::kData, input_.name(), ": empty, expected a header line with the names of the columns");
   std::unordered_set<std::string> names;
   for (size_t i = 0; i < columns_.size(); ++i) {
@@ -54,8 +54,9 @@ bool TsvReader::row(std::vector<std::string>& fields) {
   const uint64_t begin_of_line = input_.offset();
   if (!input_.line(line)) return false;
   // A number that was cut off may still be a number.
-  if (input_.offset() - begin_of_line == line.size())
-    input_.bad_line("found no line end, expected LF: was the file cut off?");
+  const bool cut = input_.offset() - begin_of_line == line.size();
+  if (cut && growing_) return false;
+  if (cut) input_.bad_line("found no line end, expected LF: was the file cut off?");
   const bool header = &fields == &columns_;
   if (line.ends_with('\r'))
     input_.bad_line("ends in CR LF, expected LF alone: take the CRs out first, for instance with tr -d '\\r'");

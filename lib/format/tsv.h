@@ -16,7 +16,8 @@ class TsvReader {
  public:
   // Reads the header. Throws kData for an empty input, a repeated or empty column name, more than kTsvColumns columns,
   // and, here as in every row, for CR LF line ends, a last line without LF, control characters or invalid UTF-8.
-  explicit TsvReader(Input& input);
+  // Of a table that is `growing`, a last line without LF is passed over: it is still being written.
+  explicit TsvReader(Input& input, bool growing = false);
 
   const std::vector<std::string>& columns() const { return columns_; }
   // Position of a column, or -1.
@@ -40,6 +41,7 @@ class TsvReader {
  private:
   bool row(std::vector<std::string>& fields);
   Input& input_;
+  bool growing_;
   std::vector<std::string> columns_, fields_;
 };
 

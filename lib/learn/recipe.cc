@@ -262,7 +262,8 @@ void RecipeOptions::add_to(Options& options) {
                  }
                  recipe_ = name;
                  recipe_given_ = true;
-               });
+               })
+      .suggest({"fast", "paper"});
   for (const Hyper& hyper : hypers()) {
     if (hyper.heading) options.section(hyper.heading);
     const std::string a = default_of(hyper, "fast"), b = default_of(hyper, "paper");

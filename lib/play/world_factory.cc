@@ -92,6 +92,12 @@ const std::vector<std::string>& world_names() {
   return names;
 }
 
+std::vector<std::string> world_kinds() {
+  std::vector<std::string> names;
+  for (const KindOfWorld& world : kWorlds) names.emplace_back(world.name);
+  return names;
+}
+
 std::unique_ptr<World> open_world(const std::string& name) {
   for (const KindOfWorld& world : kWorlds)
     if (name == world.name || (world.has_folders && name.starts_with(concat(world.name, ":")))) return world.open(name);

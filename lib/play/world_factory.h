@@ -14,6 +14,8 @@ constexpr Cause kNoSource{"no source of environments"}, kOtherSource{"a source w
 
 // As the command line has them; NAME:DIR reads the environments from the files of a folder.
 const std::vector<std::string>& world_names();
+// Without the folders: for completions.
+std::vector<std::string> world_kinds();
 // The world of one of these names. Throws kUsage for another, kData and kNoInput for what is wrong with its files.
 std::unique_ptr<World> open_world(const std::string& name);
 // A world by its name() from environments() as a file has kept them; those without content are taken from `source` by

@@ -82,6 +82,7 @@ int adapt(int argc, char** argv) {
       "Learns embeddings of environments and tasks that no seen pair of the checkpoint has; all else stays as it is.");
   options.text('c', "checkpoint", "FILE", "the trained policy", checkpoint_path)
       .text('w', "world", "WORLD", concat("new environments too: ", alternatives(world_names())), world_name)
+      .suggest(world_kinds())
       .integer('n', "count", "N", "updates", updates, 1, INT64_MAX)
       .integer(0, "trajectories", "N", "demonstrations of an update, drawn anew for each", adaptation.trajectories, 1,
                100000)

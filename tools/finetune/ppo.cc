@@ -32,6 +32,7 @@ int ppo(int argc, char** argv) {
             "go on from a checkpoint of --save, to the same bits; the other options must be the same", s.resume)
       .choice(0, "init", "random", "from scratch: a network of random weights, for -w and -m", init, {"random"})
       .text('w', "world", "WORLD", worlds, s.world)
+      .suggest(world_kinds())
       .text('m', "method", "NAME", "with --init: the method", s.method);
   s.add_to(options);
   s.ppo.add_to(options);

@@ -24,10 +24,11 @@ int matrix_show(int argc, char** argv) {
   options.text(0, "method", "NAME", "only the rows of this method", method)
       .call(0, "scheme", "NAME", "safe, purple-red, blue-red or figure8 [safe]",
             [&](const std::string& name) { scheme = find_scheme(name).name; })
+      .suggest(scheme_names())
       .choice(0, "by", "KIND", "tell apart seen from unseen pairs, or parts: seen or part", by, {"seen", "part"});
   colour.add_to(options);
   options.text('o', "output", "FILE", "where the matrix goes", output_path);
-  const Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles));
+  const Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles), true);
   const HeatFigure figure = arrange({{"", pool_matrix(matrix, method, by == "part")}}, grid_task_names());
   Output output(output_path);
   const int width = screen_size(output.is_stdout() ? 1 : -1).columns;

@@ -91,6 +91,7 @@ int matrix_split(int argc, char** argv) {
             })
       .seed(plan.seed, "seed of the draw", "SEED")
       .text('w', "world", "WORLD", worlds_or_any(), world)
+      .suggest(world_kinds())
       .text(0, "envs", "LIST", "environments: how many, or names with commas between [all]", envs)
       .text(0, "tasks", "LIST", "tasks: how many, or names with commas between [all]", tasks)
       .section("Transfer settings")

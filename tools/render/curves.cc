@@ -1,16 +1,28 @@
 // synpo-render curves: run logs as learning curves.
+#include <poll.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/cli/options.h"
+#include "base/cli/screen.h"
 #include "base/error.h"
 #include "base/files/io.h"
+#include "base/signals.h"
 #include "draw/canvas/font.h"
 #include "draw/plot/curves.h"
+#include "draw/terminal/terminal.h"
+#include "draw/terminal/text_curves.h"
 #include "format/run_log.h"
+#include "render/curve_data.h"
 #include "render/render.h"
 #include "stats/curve.h"
 
@@ -18,62 +30,71 @@ using namespace synpo;
 
 namespace {
 
-// The meaning of -y: the log's columns, one for each part, and the axis.
-struct Measure {
-  std::vector<std::string> columns, parts;
-  std::string title;
-  bool percent;
-};
-
-Measure find_measure(const std::string& name, const std::string& pairs) {
-  if (name == "success" || name == "reward") {
-    Measure measure{{}, {}, name == "success" ? "success (%)" : "reward of an episode", name == "success"};
-    for (const std::string part : {"seen", "unseen"})
-      if (pairs == "both" || pairs == part) {
-        measure.columns.push_back(part + "_" + name);
-        measure.parts.push_back(part);
+// The curves of a picture as a terminal shows them.
+std::string text_of(const CurveSet& set, const CurvesStyle& style, const std::string& y_title, bool percent,
+                    const ScreenSize& size, TerminalColour colour) {
+  constexpr int kUsualColumns = 80, kUsualRows = 24;
+  TextCurvesStyle text;
+  text.title = style.title;
+  text.x_title = style.x_title;
+  text.y_title = y_title;
+  text.percent = percent;
+  text.x_low = style.x.low;
+  text.x_high = style.x.high;
+  text.y_low = style.y.low;
+  text.y_high = style.y.high;
+  text.columns = size.columns > 0 ? size.columns : kUsualColumns;
+  text.rows = (size.rows > 0 ? size.rows : kUsualRows) - 1;  // the shell's line follows
+  text.braille = locale_is_utf8();
+  text.colour = colour;
+  std::vector<TextCurve> curves;
+  for (const CurveSet::Method& method : set.methods)
+    for (size_t part = 0; part < set.parts.size(); ++part) {
+      TextCurve curve{
+          method.label + (method.label.empty() || set.parts[part].empty() ? "" : ", ") + set.parts[part], {}, {}};
+      if (const auto& mean = method.parts[part]) {
+        curve.x = mean->x;
+        curve.y = mean->mean;
       }
-    return measure;
-  }
-  static const Measure known[] = {
-      {{"loss"}, {}, "loss", false},
-      {{"learning_rate"}, {}, "learning rate", false},
-      {{"states_per_s"}, {}, "states per second", false},
-      {{"policy"}, {}, "policy loss (nats)", false},
-      {{"env"}, {}, "environment loss (nats)", false},
-      {{"task"}, {}, "task loss (nats)", false},
-      {{"right_move"}, {}, "right moves (%)", true},
-      {{"right_pick"}, {}, "right picks (%)", true},
-      {{"right_walk_on"}, {}, "right walking on (%)", true},
-      {{"right_start"}, {}, "right starts (%)", true},
-  };
-  std::string title = name;
-  std::replace(title.begin(), title.end(), '_', ' ');
-  Measure measure{{name == "reward_loss" ? "reward" : name}, {}, title, false};
-  for (const Measure& candidate : known)
-    if (candidate.columns[0] == name) measure = candidate;
-  measure.parts = {""};
-  return measure;
+      curves.push_back(std::move(curve));
+    }
+  return text_curves(curves, text);
 }
 
-// The curves of one log, one for each part; empty where a part has no values.
-std::vector<Curve> read_curves(const std::string& path, RunLogAxis axis, double unit, const Measure& measure,
-                               const std::string& name) {
-  Input input(path);
-  const RunLogTable log = read_run_log(input, axis, measure.columns);
-  std::vector<Curve> curves(measure.columns.size());
-  size_t values = 0;
-  for (size_t i = 0; i < log.x.size(); ++i)
-    for (size_t column = 0; column < curves.size(); ++column)
-      if (const double y = log.columns[column][i]; !std::isnan(y)) {
-        curves[column].x.push_back(log.x[i] * unit);
-        curves[column].y.push_back(measure.percent ? 100 * y : y);
-        ++values;
+// The size and the time of a file's last change, and which file it is: it changes with what can be read there.
+std::vector<int64_t> state_of(const std::string& path) {
+  struct stat status;
+  if (stat(path.c_str(), &status) != 0) return {};
+  return {int64_t(status.st_dev), int64_t(status.st_ino), int64_t(status.st_size), int64_t(status.st_mtim.tv_sec),
+          int64_t(status.st_mtim.tv_nsec)};
+}
+
+// Draws anew whenever a log or the size of the terminal has changed, until a signal comes. What cannot be read at that
+// moment is said in place of the curves.
+[[noreturn]] void follow(const std::vector<LabelledFiles>& logs, Output& output,
+                         const std::function<std::string(const ScreenSize&)>& draw) {
+  constexpr int kEvery_ms = 250;
+  std::vector<std::vector<int64_t>> before;
+  while (true) {
+    const ScreenSize size = screen_size(1);
+    std::vector<std::vector<int64_t>> now = {{size.columns, size.rows}};
+    for (const LabelledFiles& method : logs)
+      for (const std::string& path : method.paths) now.push_back(state_of(path));
+    if (now != before) {
+      std::string screen;
+      try {
+        screen = draw(size);
+      } catch (const Error& error) {
+        screen = "waiting: " + printable(error.what()) + "\n";
       }
-  if (values == 0)
-    fail(Exit::kData, input.name(), ": no value of ", name, " in ", log.x.size(), log.x.size() == 1 ? " row" : " rows",
-         measure.parts[0].empty() ? "" : ": the run made no evaluation");
-  return curves;
+      output.write("\033[H\033[2J" + screen);
+      output.flush();
+    }
+    before = std::move(now);
+    pollfd stop = {stop_descriptor(), POLLIN, 0};
+    poll(&stop, 1, kEvery_ms);
+    stop_if_asked();
+  }
 }
 
 }  // namespace
@@ -83,12 +104,14 @@ int curves(int argc, char** argv) {
   PictureOptions picture;
   std::string x = "updates", y = "success", pairs = "both", band = "sd", log_axis = "none";
   double rate = 0;
+  bool follows = false;
   Options options(
       "synpo-render curves", "[OPTION]... [[LABEL=]LOG[,LOG]...]...",
       "Draws run logs as curves. Logs of one label are runs of one method: their mean, and a band around it.");
   options.choice('x', "across", "AXIS", "updates, states or minutes", x, {"updates", "states", "minutes"})
       .text('y', "up", "COLUMN", "success, reward, reward_loss, or any column of the log", y)
-      .choice(0, "pairs", "WHICH", "seen, unseen or both", pairs, {"seen", "unseen", "both"})
+      .choice(0, "pairs", "WHICH", "seen, unseen or both; or training: those that it played itself", pairs,
+              {"seen", "unseen", "both", "training"})
       .integer(0, "panels", "N", "1: seen dashed, unseen drawn through; 2: side by side; 0: 2 for several methods",
                style.panels, 0, 2)
       .choice(0, "band", "KIND", "over the runs: sd, range (lowest to highest) or none", band, {"sd", "range", "none"})
@@ -108,38 +131,64 @@ int curves(int argc, char** argv) {
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .call(0, "size", "WxH", "width and height in points [380x270, 620x270 for two panels]",
             [&](const std::string& text) { parse_curves_size(text, style); });
+  picture.add_ansi(options, "text for a terminal instead of a PNG");
+  options.flag(0, "follow", "--ansi, drawn anew as the logs grow, until Ctrl-C", follows);
   picture.add_to(options);
   const std::vector<LabelledFiles> logs = labelled_files(options.parse(argc, argv, 0, 1000));
-  picture.settle(options);
+  picture.ansi |= follows;
+  picture.settle(options, {"size", "mark", "band", "panels", "log-axis"});
   style.scale = picture.scale;
   style.band = band == "sd" ? Band::kSd : band == "range" ? Band::kRange : Band::kNone;
   if (rate > 0 && x != "minutes") fail(Exit::kUsage, "--rate is for -x minutes");
   const Measure measure = find_measure(y, pairs);
-  if (measure.parts[0].empty())
+  if (measure.own.empty())
     for (const char* option : {"pairs", "panels"})
-      if (options.given(option)) fail(Exit::kUsage, "--", option, " is for -y success and -y reward");
+      if (options.given(option) && !(measure.of_training && option == std::string("pairs")))
+        fail(Exit::kUsage, "--", option, " is for -y success and -y reward");
   for (const CurveMark& mark : style.marks)
     if (!mark.part.empty() && std::find(measure.parts.begin(), measure.parts.end(), mark.part) == measure.parts.end())
       fail(Exit::kUsage, "a mark for ", mark.part, " pairs, which are not drawn");
   style.log_x = log_axis.find('x') != std::string::npos;
   style.log_y = log_axis.find('y') != std::string::npos;
   style.x_title = x;
-  style.y_title = measure.title;
-  style.percent = measure.percent;
   const RunLogAxis axis = x == "updates"              ? RunLogAxis::kUpdates
                           : x == "states" || rate > 0 ? RunLogAxis::kStates
                                                       : RunLogAxis::kMinutes;
 
+  CurveRequest request{logs, axis, rate > 0 ? 1 / rate / 60 : 1, y, measure, !options.given("up"), follows};
+  std::string note;
+  const auto read = [&] {
+    CurveData data = read_curve_data(request);
+    style.y_title = data.measure.title;
+    style.percent = data.measure.percent;
+    note = data.note;
+    for (MethodRuns& method : data.methods)
+      for (std::vector<Curve>& run : method.runs)
+        for (Curve& curve : run) curve = running_mean(curve, style.smooth);
+    return average_runs(data.methods, data.measure.parts, style.band, style.percent);
+  };
   Output output = picture.open();
-  const Font font(picture.font);
-  std::vector<MethodRuns> methods;
-  for (const LabelledFiles& method : logs) {
-    methods.push_back({method.label, {}});
-    for (const std::string& path : method.paths)
-      methods.back().runs.push_back(read_curves(path, axis, rate > 0 ? 1 / rate / 60 : 1, measure, y));
-    for (std::vector<Curve>& run : methods.back().runs)
-      for (Curve& curve : run) curve = running_mean(curve, style.smooth);
+  const TerminalColour colour = picture.colour.of(output);
+  const auto draw_text = [&](const ScreenSize& size) {
+    const CurveSet set = read();
+    return (note.empty() ? "" : note + "\n") + text_of(set, style, style.y_title, style.percent, size, colour);
+  };
+  if (follows) {
+    for (const LabelledFiles& method : logs)
+      for (const std::string& path : method.paths)
+        if (path == "-") fail(Exit::kUsage, "--follow needs logs that are files, found standard input");
+    if (!output.is_stdout() || !isatty(1))
+      fail(Exit::kUsage, "--follow draws on a terminal, and standard output is none");
+    catch_stop_signals();
+    follow(logs, output, draw_text);
   }
-  picture.finish(output, draw_curves(average_runs(methods, measure.parts, style.band, measure.percent), style, font));
+  if (picture.ansi) {
+    finish(output, draw_text(screen_size(output.is_stdout() ? 1 : -1)));
+    return 0;
+  }
+  const Font font(picture.font);
+  const CurveSet set = read();
+  picture.finish(output, draw_curves(set, style, font));
+  if (!note.empty()) std::fprintf(stderr, "synpo-render: note: %s\n", note.c_str());
   return 0;
 }

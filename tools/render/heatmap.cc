@@ -52,7 +52,7 @@ std::vector<PanelMatrix> split(const Matrix& matrix, const PanelChoice& choice) 
 std::vector<HeatPanel> read_panels(const std::vector<LabelledFiles>& files, const PanelChoice& choice) {
   std::vector<HeatPanel> panels;
   for (const LabelledFiles& one : files) {
-    for (const PanelMatrix& part : split(read_matrices(one.paths), choice)) {
+    for (const PanelMatrix& part : split(read_matrices(one.paths, true), choice)) {
       const std::string title = one.label + (one.label.empty() || part.title.empty() ? "" : ", ") + part.title;
       try {
         panels.push_back({title, pool_matrix(part.matrix, choice.method, choice.colours == "part")});
@@ -98,17 +98,22 @@ int heatmap(int argc, char** argv) {
   std::string labels = "own";
   HeatOrder tasks = HeatOrder::kPaper, envs = HeatOrder::kPaper;
   bool no_values = false;
+  const std::vector<std::string> orders = {"paper", "given", "natural", "mean", "cluster"};
   Options options("synpo-render heatmap", "[OPTION]... [[LABEL=]MATRIX[,MATRIX]...]...",
                   "Draws success matrices side by side: tasks down, environments across, darker is better.");
   options.choice(0, "panels", "WHAT", "a panel for each file, method or seed", choice.by, {"file", "method", "seed"})
       .text(0, "method", "NAME", "only the rows of this method", choice.method)
       .call(0, "order", "ORDER", "of tasks and environments: paper, given, natural, mean or cluster [paper]",
             [&](const std::string& name) { tasks = envs = find_order(name); })
+      .suggest(orders)
       .call(0, "task-order", "ORDER", "of tasks alone", [&](const std::string& name) { tasks = find_order(name); })
+      .suggest(orders)
       .call(0, "env-order", "ORDER", "of environments alone", [&](const std::string& name) { envs = find_order(name); })
+      .suggest(orders)
       .flag(0, "margins", "the mean of each task and each environment", style.margins)
       .call(0, "scheme", "NAME", "safe, purple-red, blue-red or figure8 [safe]",
             [&](const std::string& name) { style.scheme = find_scheme(name).name; })
+      .suggest(scheme_names())
       .choice(0, "by", "COLUMN", "what the colours tell apart: seen or part", choice.colours, {"seen", "part"})
       .flag(0, "no-values", "leave the rates out of the cells", no_values)
       .real(0, "cell", "POINTS", "side of a cell; 0: by the size of the matrix", style.cell_pt, 0, 200)

@@ -11,6 +11,7 @@
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/font.h"
 #include "draw/face/world_face.h"
+#include "play/world_factory.h"
 
 // Every command takes these: where the picture goes, its format, size and font; and --ansi, where the command can draw
 // with characters. settle() comes after the command line is read, and before the others.
@@ -69,6 +70,7 @@ struct WorldOptions {
   void add_to(synpo::Options& options,
               const std::string& help = "gridworld, gridworld:DIR for the map files of a folder, or kitchen") {
     options.text('w', "world", "WORLD", help, name)
+        .suggest(synpo::world_kinds())
         .text('c', "checkpoint", "FILE", "instead of -w: the world of a checkpoint", checkpoint);
   }
   // Throws kUsage where both are given.

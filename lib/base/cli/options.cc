@@ -182,6 +182,29 @@ Options& Options::text(char letter, const char* name, const char* arg, const std
   return call(letter, name, arg, help, [&value](const std::string& given) { value = given; }).shown_as(value);
 }
 
+Options& Options::suggest(const std::vector<std::string>& words) {
+  entries_.back().words = words;
+  return *this;
+}
+
+std::string Options::table() const {
+  std::string out;
+  for (const Entry& entry : entries_) {
+    if (entry.kind == Kind::kHeading) continue;
+    if (entry.kind == Kind::kCommand) {
+      out += concat("command\t", entry.name, '\t', entry.help, '\n');
+      continue;
+    }
+    std::string words;
+    for (const std::string& word : entry.words) words += (words.empty() ? "" : " ") + word;
+    const std::string letter = entry.letter ? std::string("-") + entry.letter : "";
+    const std::string rest = concat('\t', entry.arg, '\t', words, '\t', entry.help, '\n');
+    out += concat("option\t", letter, "\t--", entry.name, rest);
+    if (entry.kind == Kind::kToggle) out += concat("option\t\t--no-", entry.name, rest);
+  }
+  return out;
+}
+
 Options& Options::section(const char* title) { return add(Kind::kHeading, 0, title, "", "", nullptr); }
 
 Options& Options::command(const char* name, const char* purpose) {
@@ -295,6 +318,7 @@ std::vector<std::string> Options::parse(int argc, char** argv, int least, int mo
   add(Kind::kFlag, 0, "version", "", "the version", [this](const std::string&) {
     print_and_exit(tool_.substr(0, tool_.find(' ')) + " (synpo) " + version_text() + "\n");
   });
+  if (argc == 2 && argv[1] == std::string("--list-options")) print_and_exit(table());
   std::vector<std::string> operands;
   Words words{argv + std::min(argc, 1), argv + argc};
   while (const char* next = words.take()) {

@@ -43,6 +43,8 @@ class Options {
   Options& threads(int& value,
                    const std::string& help = "threads; 0: as many as there are; results don't depend on it");
   Options& quiet(bool& value, const std::string& help = "no progress");
+  // A shell completes the argument of the option added last with these, though it may be another.
+  Options& suggest(const std::vector<std::string>& words);
   // --help shows this as the default of the option added last, in place of the value's own.
   Options& shown_as(const std::string& default_text);
   // A heading in --help above the options that follow.
@@ -60,6 +62,10 @@ class Options {
   // Throws kUsage with the message and where to find help.
   [[noreturn]] void wrong(const std::string& message) const;
 
+  // The table of options for scripts/completions, which --list-options prints: lines of fields with tabs between,
+  // "command NAME PURPOSE" and "option -LETTER --NAME ARGUMENT WORDS HELP", an empty field where there is none.
+  std::string table() const;
+
   // The text of --help in lines of at most `width` columns where words allow.
   std::string usage(size_t width) const;
 
@@ -71,7 +77,7 @@ class Options {
     std::string name, arg, help, shown_default;
     std::function<void(const std::string&)> set;
     bool given = false;
-    std::vector<std::string> words = {};  // that the argument may be, where they are a few
+    std::vector<std::string> words = {};  // that the argument may be, some of them or all
   };
   // An option as it stands on the command line; `off`: as --no-NAME.
   struct Found {

@@ -87,6 +87,7 @@ void draw_cells(Canvas& canvas, const HeatTable& table, const Box& matrix, const
     const HeatCell& cell = table.cells[i];
     const Box box = {matrix.x + i % envs * layout.cell, matrix.y + i / envs * layout.cell, side, side};
     std::optional<ShownRate> shown;
+    if (table.split && cell.group >= 0) shown = {kSplitShade, ""};
     if (cell.evaluated()) shown = {cell.rate(), rate_text(cell.successes, cell.episodes)};
     draw_cell(canvas, box, shown, group_ramp(table, cell.group, scheme), layout,
               named[i] ? table.parts[cell.part].name : "");

@@ -57,6 +57,12 @@ char mark_of(const HeatTable& table, int group) {
   return name == "seen" ? ' ' : name == "unseen" ? '*' : name[0];
 }
 
+// The same of pairs alone: seen ones stand out.
+char split_mark(const HeatTable& table, int group) {
+  const std::string& name = table.groups[group].name;
+  return name == "seen" ? '#' : name == "unseen" ? '.' : name[0];
+}
+
 // Names across: what they share in the corner and the rest above their columns, or else read downwards.
 std::string head(const HeatTable& table, size_t label, size_t cell) {
   constexpr size_t kMostLines = 12;
@@ -105,6 +111,12 @@ std::string ground_code(Rgb ground, TerminalColour colour) {
   return concat("\033[38;5;", ink, ";48;2;", int(ground.r), ';', int(ground.g), ';', int(ground.b), 'm');
 }
 
+std::string ink_code(Rgb ink, TerminalColour colour) {
+  if (colour == TerminalColour::kNone) return "";
+  if (colour == TerminalColour::k256) return concat("\033[38;5;", cube_index(ink), 'm');
+  return concat("\033[38;2;", int(ink.r), ';', int(ink.g), ';', int(ink.b), 'm');
+}
+
 std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, TerminalColour colour, int width) {
   HeatTable table = named;
   table.caption = printable(table.caption);
@@ -122,6 +134,14 @@ std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, Termin
     std::string line;
     for (size_t env = 0; env < table.envs.size(); ++env) {
       const HeatCell& at = table.at(task, env);
+      if (table.split && at.group >= 0) {
+        if (coloured)
+          line += ground_code(ramp_colour(group_ramp(table, at.group, scheme), kSplitShade), colour) +
+                  std::string(cell, ' ') + kPlainCode;
+        else
+          line += std::string(cell - 2, ' ') + split_mark(table, at.group) + ' ';
+        continue;
+      }
       if (!at.evaluated()) {
         line += std::string(cell - (coloured ? 0 : 1), ' ') + (coloured ? "" : " ");
         continue;
@@ -139,6 +159,13 @@ std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, Termin
   text += '\n';
   for (size_t i = 0; i < table.groups.size(); ++i) {
     const HeatGroup& group = table.groups[i];
+    if (table.split) {
+      text += coloured ? ground_code(ramp_colour(group_ramp(table, int(i), scheme), kSplitShade), colour) + "   " +
+                             kPlainCode + ' '
+                       : std::string(1, split_mark(table, int(i))) + " ";
+      text += concat(group.name, ": ", group.members, group.members == 1 ? " pair\n" : " pairs\n");
+      continue;
+    }
     if (group.pairs == 0) continue;
     if (coloured)
       text +=

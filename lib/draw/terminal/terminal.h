@@ -20,6 +20,8 @@ TerminalColour forced_colour();
 
 // The escape sequence for a block of this colour with readable text on it.
 std::string ground_code(Rgb ground, TerminalColour colour);
+// The same for text of this colour.
+std::string ink_code(Rgb ink, TerminalColour colour);
 constexpr char kPlainCode[] = "\033[0m";
 
 // Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after

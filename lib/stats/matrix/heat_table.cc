@@ -141,8 +141,12 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
     if (cell.group < 0) continue;
     occurs[cell.group] = true;
     groups[cell.group].add(cell);
-    if (cell.part >= 0) table.parts[cell.part].add(cell);
+    ++groups[cell.group].members;
+    if (cell.part < 0) continue;
+    table.parts[cell.part].add(cell);
+    ++table.parts[cell.part].members;
   }
+  table.split = std::none_of(rows.begin(), rows.end(), [](const MatrixRow* row) { return row->episodes > 0; });
   std::vector<int> renumbered(groups.size(), -1);
   for (size_t i = 0; i < groups.size(); ++i)
     if (occurs[i]) {

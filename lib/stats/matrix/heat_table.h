@@ -37,6 +37,7 @@ struct HeatMean {
 // A kind of pairs with a mean of its own: seen, unseen and new, or a part.
 struct HeatGroup : HeatMean {
   std::string name;
+  int64_t members = 0;  // pairs, evaluated or not
   HeatGroup(std::string its_name) : name(std::move(its_name)) {}
 };
 
@@ -46,6 +47,7 @@ struct HeatTable {
   std::vector<HeatGroup> groups;  // what the colours tell apart, only what occurs
   std::vector<HeatGroup> parts;   // empty where the matrix has none
   bool by_part = false;           // groups are the parts
+  bool split = false;             // of pairs that nobody evaluated: the group is all that a cell has
   std::string caption;            // method, runs and episodes, in words
   const HeatCell& at(size_t task, size_t env) const { return cells[task * envs.size() + env]; }
 };

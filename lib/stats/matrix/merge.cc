@@ -155,12 +155,14 @@ class Merger {
 
 }  // namespace
 
-Matrix read_matrices(std::vector<std::string> files) {
+Matrix read_matrices(std::vector<std::string> files, bool or_pairs) {
   if (files.empty()) files = {"-"};
   std::vector<MatrixSource> sources;
   for (const std::string& file : files) {
     Input input(file);
-    sources.push_back({input.name(), read_matrix(input)});
+    sources.push_back({input.name(), read_matrix(input, or_pairs)});
+    if (files.size() > 1 && sources.back().matrix.rows[0].episodes == 0)
+      fail(Exit::kData, input.name(), ": found pairs without episodes, expected a success matrix beside the others");
   }
   return merge_matrices(std::move(sources));
 }

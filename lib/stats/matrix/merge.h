@@ -22,8 +22,9 @@ struct MatrixSource {
 // depend on the order of the sources. Unknown columns are united; a source without one has empty fields there.
 Matrix merge_matrices(std::vector<MatrixSource> sources);
 
-// The matrices of these files (none: standard input), merged.
-Matrix read_matrices(std::vector<std::string> files);
+// The matrices of these files (none: standard input), merged. With `or_pairs` a file of pairs may stand there alone, as
+// read_matrix() reads it; beside other files it is kData.
+Matrix read_matrices(std::vector<std::string> files, bool or_pairs = false);
 
 // a + b, exactly where both are whole hundredths, as GridWorld's rewards are.
 double add_rewards(double a, double b);

@@ -46,5 +46,5 @@ has_colour() { grep -q "$(printf '\033\\[38;5;')" "$1"; }
     grep -q "$(printf '^\033\\[38;5;231;48;2;[0-9;]*mseen\033\\[0m  ')" true
     grep -q "$(printf '^\033\\[38;5;16;48;2;[0-9;]*munseen\033\\[0m')" true
     synpo-matrix summary --tsv --colour always hand.tsv >table
-    ! has_colour table
+    run ! has_colour table
 }

@@ -51,7 +51,7 @@ all_commands() {
     fails 64 synpo-train --evalute-every 3
     says "unknown option '--evalute-every' (did you mean '--evaluate-every'?)"
     fails 64 synpo-gen-expert --no-of 3
-    ! grep -q "did you mean" "$BATS_TEST_TMPDIR/err"
+    run ! grep -q "did you mean" "$BATS_TEST_TMPDIR/err"
     fails 64 synpo-render map mpa3
     says "no maze 'mpa3' in this world (did you mean 'map3'?)"
     fails 64 synpo-render view -t R_B

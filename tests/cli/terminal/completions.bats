@@ -1,0 +1,120 @@
+load ../common
+
+setup_file() {
+    cd "$BATS_FILE_TMPDIR" || exit
+    for tool in $TOOLS; do
+        for shell in bash zsh fish; do "$ROOT/scripts/completions" $shell "$(command -v "$tool")" >"$tool.$shell"; done
+    done
+}
+setup() {
+    set_up
+    # shellcheck disable=SC1090
+    for tool in $TOOLS; do source "$BATS_FILE_TMPDIR/$tool.bash"; done
+}
+
+# The commands of every tool that take options of their own, one a line.
+commands() {
+    local tool
+    for tool in $TOOLS; do
+        case $tool in
+            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help |
+                awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
+            *) echo "$tool" ;;
+        esac
+    done
+}
+
+# completed WORD...: what bash offers for the last word of a command line, one a line, sorted. Where it leaves the word
+# to file names, as bash does outside of readline, it is "files".
+completed() {
+    compopt() { echo files; }
+    COMP_WORDS=("$@") COMP_CWORD=$(($# - 1))
+    COMPREPLY=()
+    "_${1//-/_}" "$1"
+    [ ${#COMPREPLY[@]} -eq 0 ] || printf '%s\n' "${COMPREPLY[@]}" | sort
+}
+
+# Options in a --help text, one a line: -n and --count alike.
+help_options() {
+    awk '/^ +-/ {
+        line = $0
+        sub(/^ +/, "", line)
+        sub(/   *.*/, "", line)
+        n = split(line, word, /[ ,]+/)
+        for (i = 1; i <= n; ++i) if (word[i] ~ /^-/) print word[i]
+    }' | sort -u
+}
+
+@test "bash, zsh and fish complete every option that --help has, and no other" {
+    commands >all
+    [ "$(wc -l <all)" -ge 23 ]
+    while read -r -a command; do
+        "${command[@]}" --help | help_options >in_help
+        completed "${command[@]}" - >offered
+        of_command=${command[1]+"seen_subcommand_from ${command[1]}."}
+        diff in_help offered
+        for shell in zsh fish; do
+            of=$BATS_FILE_TMPDIR/${command[0]}.$shell
+            case $shell in
+                zsh) awk -v command="${command[1]-}" '
+                    command != "" && $1 == command ")" { inside = 1 }
+                    command == "" || inside
+                    $1 == ";;" { inside = 0 }' "$of" | grep -oE -- "(^ +'--?|[{,]--?)[a-z0-9][a-z0-9-]*" |
+                    grep -oE -- '--?[a-z0-9][a-z0-9-]*$' ;;
+                fish) grep -E -- "^complete .*$of_command" "$of" | grep -vF -- ' -a help' |
+                    grep -oE -- ' -(s [a-zA-Z]|l [a-z0-9-]+)' | sed 's/ -s /-/; s/ -l /--/' ;;
+            esac | sort -u >offered
+            diff in_help offered || complain "${command[*]}: $shell"
+        done
+    done <all
+}
+
+@test "bash: commands, words that an argument may be, files, folders, nothing where nobody can guess" {
+    for tool in synpo-matrix synpo-render synpo-finetune; do
+        { "$tool" --help | awk '/^  [a-z]/ { print $1 }' && echo help; } | sort | cmp - <(completed "$tool" '')
+        { "$tool" --help | awk '/^  [a-z]/ { print $1 }' && echo help; } | sort | cmp - <(completed "$tool" help '')
+    done
+    [ "$(completed synpo-matrix su)" = summary ]
+    [ "$(completed synpo-matrix table -f '' | tr '\n' ' ')" = "latex markdown text tsv " ]
+    [ "$(completed synpo-matrix table --format = ma)" = markdown ]
+    [ "$(completed synpo-matrix show --colour '' | tr '\n' ' ')" = "always auto never " ]
+    [ "$(completed synpo-render heatmap --scheme p)" = purple-red ]
+    [ "$(completed synpo-train -m m | tr '\n' ' ')" = "mlp modulenet mtl " ]
+    [ "$(completed synpo-train --recipe '' | tr '\n' ' ')" = "fast paper " ]
+    [ "$(completed synpo-gen-expert -w '' | tr '\n' ' ')" = "gridworld kitchen " ]
+    [ "$(completed synpo-train --save '')" = files ]
+    [ "$(completed synpo-eval '')" = files ]
+    [ "$(completed synpo-matrix summary '')" = files ]
+    [ -z "$(completed synpo-train -n '')" ]
+    [ -z "$(completed synpo-train --lr '')" ]
+    mkdir one two
+    touch three
+    [ "$(completed synpo-render episode --frames '' | tr '\n' ' ')" = "one two " ]
+    [ "$(completed synpo-train --evaluate-e | tr '\n' ' ')" = "--evaluate-episodes --evaluate-every " ]
+}
+
+@test "the shells that are here read their files" {
+    for tool in $TOOLS; do
+        bash -n "$BATS_FILE_TMPDIR/$tool.bash"
+        ! command -v zsh >/dev/null || zsh -n "$BATS_FILE_TMPDIR/$tool.zsh"
+        ! command -v fish >/dev/null || fish --no-execute "$BATS_FILE_TMPDIR/$tool.fish"
+    done
+    run -64 "$ROOT/scripts/completions" tcsh synpo-train
+    run -64 "$ROOT/scripts/completions" bash
+}
+
+@test "bash: in a shell of its own, as a user types it" {
+    command -v tmux >/dev/null || skip "no tmux"
+    export TMUX_TMPDIR=$BATS_TEST_TMPDIR
+    unset TMUX
+    tmux -f /dev/null -L synpo new-session -d -x 80 -y 24 "env PS1='> ' bash --norc"
+    tmux -L synpo send-keys "source $BATS_FILE_TMPDIR/synpo-matrix.bash" Enter
+    tmux -L synpo send-keys "synpo-matrix ta" Tab "--fo" Tab "ma" Tab
+    for ((i = 0; i < 200; ++i)); do
+        ! tmux -L synpo capture-pane -p | grep -q "^> synpo-matrix table --format markdown" || break
+        sleep 0.05
+    done
+    tmux -L synpo capture-pane -p >screen
+    tmux -L synpo kill-server
+    grep -q "^> synpo-matrix table --format markdown" screen || complain "$(cat screen)"
+}
