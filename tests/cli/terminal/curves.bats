@@ -41,9 +41,10 @@ teardown() {
 @test "values stand where they belong" {
     printf 'update\tloss\n1\t0\n2\t10\n3\t0\n' >hand.log
     synpo-render curves --ansi -y loss hand.log >text
-    # The first and the last point lie on the lowest line, the middle one on the highest, in the middle.
-    [ "$(sed -n 2p text)" = "10 |$(printf '%38s' '')*" ]
-    sed -n 20p text | grep -qE '^ 0 \|\*  .*  \*$'
+    # 75 columns beside the labels: the first and the last point lie on the lowest line, at its ends, the middle one on
+    # the highest, in the 38th column.
+    [ "$(sed -n 2p text)" = " 10 |$(printf '%36s' '')***" ]
+    sed -n 20p text | grep -qE '^  0 \|\*.{73}\*$'
     tail -n 1 text | grep -qx '\* 0'
 }
 
