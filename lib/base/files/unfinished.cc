@@ -217,8 +217,8 @@ void UnfinishedFolder::publish() {
   const std::string kept = renamed ? "" : keep(temporary_, "");
   leftover_.reset();
   if (!renamed) fail(Exit::kCantCreate, "cannot create the folder '", path_, "': ", kept);
-  fsync(folder_.get());
-  sync_folder(split_path(target_).folder);
+  if ((fsync(folder_.get()) != 0 && errno != EINVAL) || !sync_folder(split_path(target_).folder))
+    fail(Exit::kIo, "cannot write the folder '", path_, "': ", std::strerror(errno));
 }
 
 }  // namespace synpo
