@@ -4,7 +4,7 @@ setup() {
     set_up
     cp -r "$ROOT/Makefile" "$ROOT/scripts" "$ROOT/man" "$ROOT/.gitattributes" .
     mkdir -p tests/unit lib tools build
-    cp -r "$ROOT/tests/fuzz" tests/
+    cp -r "$ROOT/tests/fuzz" "$ROOT"/tests/*.mk tests/
     export HOME=$PWD GIT_CONFIG_NOSYSTEM=1
 }
 

@@ -6,8 +6,9 @@ setup() { set_up a.ckpt; }
 
 # From the build under test, as it is.
 make_there() {
-    make -C "$ROOT" B="$(dirname "$(command -v synpo-train)")" -o all PREFIX=/opt/synpo \
-        DESTDIR="$PWD/to" "$@"
+    local build
+    build=$(dirname "$(command -v synpo-train)")
+    make -C "$ROOT" B="$build" -o all $(printf -- "-o $build/%s " $TOOLS) PREFIX=/opt/synpo DESTDIR="$PWD/to" "$@"
 }
 
 @test "a program of ten lines is built with pkg-config against what was installed, and counts as synpo-eval does" {
