@@ -98,7 +98,7 @@ table() {
         says "bad.log: $text"
     }
     ln -s blind.log bad.log
-    refused "no value of success in 2 rows: the run made no evaluation"
+    refused "no value of success in 2 rows: the run made no evaluation" -y success
     refused "line 1: no column 'nonsense'" -y nonsense
     rm bad.log
     printf 'env\ttask\na\tb\n' >bad.log
