@@ -253,16 +253,17 @@ std::string default_of(const Hyper& hyper, const std::string& name) {
 }  // namespace
 
 void RecipeOptions::add_to(Options& options) {
-  options.call(0, "recipe", "NAME", "preset: fast, or paper (the supplement to the letter) [fast]",
-               [this](const std::string& name) {
-                 try {
-                   recipe(name);
-                 } catch (const Error&) {
-                   throw std::invalid_argument("expected fast or paper");
-                 }
-                 recipe_ = name;
-                 recipe_given_ = true;
-               })
+  options
+      .call(0, "recipe", "NAME", "preset: fast, or paper (the supplement to the letter) [fast]",
+            [this](const std::string& name) {
+              try {
+                recipe(name);
+              } catch (const Error&) {
+                throw std::invalid_argument("expected fast or paper");
+              }
+              recipe_ = name;
+              recipe_given_ = true;
+            })
       .suggest({"fast", "paper"});
   for (const Hyper& hyper : hypers()) {
     if (hyper.heading) options.section(hyper.heading);
