@@ -27,14 +27,26 @@ class CpuEngine : public Engine {
   int inference_unit() const override { return Policy<float>::kInferenceUnit; }
 
   void take(const TrainingArrays& arrays) override { arrays_ = arrays; }
-  Losses update(Parallel& parallel, const StepBatch<float>& batch, const StepOptions& options, const AdamUpdate& adam,
-                float* logits) override;
+  void begin_update(Parallel& parallel, const StepBatch<float>& batch, const StepOptions& options,
+                    const AdamUpdate& adam, float* logits) override;
+  Losses end_update() override { return losses_; }
   void give_back() override {}
+  void take_ppo(ValueFunction& value, const PpoArrays& arrays) override {
+    value_ = &value;
+    ppo_ = arrays;
+  }
+  PpoLosses update_ppo(Parallel& parallel, const PpoBatch& batch, const PpoUpdate& update) override;
 
  private:
+  class PpoObjective;
+  void make_gradient();
+
   Policy<float>& policy_;
   TrainingArrays arrays_ = {};
+  ValueFunction* value_ = nullptr;
+  PpoArrays ppo_ = {};
   Buffer<float> gradient_;
+  Losses losses_;  // of the last update
 };
 
 }  // namespace synpo

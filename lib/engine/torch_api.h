@@ -8,7 +8,7 @@
 
 namespace synpo {
 
-constexpr int kTorchApiVersion = 1;
+constexpr int kTorchApiVersion = 2;
 
 // A tensor of the policy's layout (nn/layout.h): its place in the flat array.
 struct TorchTensor {
@@ -67,16 +67,35 @@ struct TorchLosses {
   double values[4];
 };
 
-// A loss of the scores in place of imitation's, as Objective (policy/policy.h): sets dlogits, adds to dpsi.
-struct TorchObjective {
-  double (*apply)(void* context, int n, const float* psi, const float* logits, float* dlogits, float* dpsi);
-  void* context;
-};
-
 struct TorchAdam {
   double learning_rate, beta1, beta2, epsilon, weight_decay;
   int64_t step;
   double keep;
+};
+
+// A minibatch of PPO, as PpoBatch (engine/engine.h); its statistics are frozen.
+struct TorchPpoBatch {
+  TorchBatch steps;
+  const float *log_probability, *advantage, *target;
+};
+
+struct TorchRmsProp {
+  double learning_rate, smoothing, epsilon, weight_decay;
+};
+
+struct TorchPpoOptions {
+  TorchStepOptions auxiliary;
+  double clip, entropy, value_weight, gradient_norm;
+  TorchRmsProp policy, value;
+};
+
+// As PpoLosses.
+struct TorchPpoLosses {
+  double policy, entropy, kl, clip_fraction, largest_ratio, smallest_ratio, value, total;
+};
+
+struct TorchPpoArrays {
+  float *parameters, *statistics, *mean_squares, *value_parameters, *value_mean_squares;
 };
 
 struct TorchArrays {
@@ -90,12 +109,16 @@ struct TorchApi {
   const char* (*describe)(void* engine);
   int (*create)(const TorchConfig* config, void** engine);
   void (*destroy)(void* engine);
-  int (*step)(void* engine, const TorchBatch* batch, const TorchStepOptions* options, const TorchObjective* objective,
-              const float* parameters, float* statistics, float* gradient, float* logits, TorchLosses* losses);
+  int (*step)(void* engine, const TorchBatch* batch, const TorchStepOptions* options, const float* parameters,
+              float* statistics, float* gradient, float* logits, TorchLosses* losses);
   int (*take)(void* engine, const TorchArrays* arrays);
-  int (*update)(void* engine, const TorchBatch* batch, const TorchStepOptions* options, const TorchAdam* adam,
-                float* logits, TorchLosses* losses);
+  int (*begin_update)(void* engine, const TorchBatch* batch, const TorchStepOptions* options, const TorchAdam* adam);
+  int (*end_update)(void* engine, float* logits, TorchLosses* losses);
   int (*give_back)(void* engine, const TorchArrays* arrays);
+  // PPO: `value` is the layout of the value function's tensors, always the same.
+  int (*take_ppo)(void* engine, const TorchLayout* value, const TorchPpoArrays* arrays);
+  int (*update_ppo)(void* engine, const TorchPpoBatch* batch, const TorchPpoOptions* options, TorchPpoLosses* losses);
+  int (*give_back_ppo)(void* engine, const TorchPpoArrays* arrays);
   int (*prepare_inference)(void* engine, const float* parameters, const float* statistics);
   // Scores of `size` states, at most `unit`; psi may be null.
   int (*infer)(void* engine, int unit, int size, const uint8_t* observations, const int* env, const int* task,

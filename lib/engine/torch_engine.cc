@@ -44,6 +44,12 @@ const TorchApi& plugin() {
   return *api;
 }
 
+TorchLayout describe(const Layout& layout, std::vector<TorchTensor>& tensors) {
+  for (const TensorInfo& tensor : layout.tensors())
+    tensors.push_back({tensor.name.c_str(), tensor.shape.data(), int(tensor.shape.size()), tensor.offset, tensor.size});
+  return {tensors.data(), int(tensors.size()), layout.total()};
+}
+
 // The layouts and numbers of a configuration; lives as long as what is made from it.
 class Description {
  public:
@@ -84,20 +90,9 @@ class Description {
   TorchConfig config;
 
  private:
-  static TorchLayout describe(const Layout& layout, std::vector<TorchTensor>& tensors) {
-    for (const TensorInfo& tensor : layout.tensors())
-      tensors.push_back(
-          {tensor.name.c_str(), tensor.shape.data(), int(tensor.shape.size()), tensor.offset, tensor.size});
-    return {tensors.data(), int(tensors.size()), layout.total()};
-  }
   std::vector<uint8_t> palette_;
   std::vector<TorchTensor> parameters_, statistics_;
 };
-
-double apply_objective(void* context, int n, const float* psi, const float* logits, float* dlogits, float* dpsi) {
-  const auto& [parallel, objective] = *static_cast<std::pair<Parallel*, Objective<float>*>*>(context);
-  return objective->apply(*parallel, n, psi, logits, dlogits, dpsi);
-}
 
 class TorchEngine : public Engine {
  public:
@@ -111,16 +106,14 @@ class TorchEngine : public Engine {
   TorchEngine(const TorchEngine&) = delete;
   TorchEngine& operator=(const TorchEngine&) = delete;
 
-  Losses step(Parallel& parallel, const StepBatch<float>& batch, const StepOptions& options, const float* parameters,
+  Losses step(Parallel&, const StepBatch<float>& batch, const StepOptions& options, const float* parameters,
               float* statistics, float* gradient, float* logits) override {
+    if (batch.objective) fail(Exit::kInternal, "LibTorch cannot take the gradient of an objective");
     std::vector<float> keep;
     const TorchBatch given = describe(batch, options, keep);
     const TorchStepOptions torch_options = describe(options);
-    std::pair<Parallel*, Objective<float>*> context = {&parallel, batch.objective};
-    const TorchObjective objective = {apply_objective, &context};
     TorchLosses losses;
-    check(api_.step(engine_, &given, &torch_options, batch.objective ? &objective : nullptr, parameters, statistics,
-                    gradient, logits, &losses));
+    check(api_.step(engine_, &given, &torch_options, parameters, statistics, gradient, logits, &losses));
     return result(losses, options);
   }
 
@@ -144,22 +137,58 @@ class TorchEngine : public Engine {
                arrays.second_moment, arrays.average,    arrays.average_statistics};
     check(api_.take(engine_, &arrays_));
   }
-  Losses update(Parallel&, const StepBatch<float>& batch, const StepOptions& options, const AdamUpdate& adam,
-                float* logits) override {
+  void begin_update(Parallel&, const StepBatch<float>& batch, const StepOptions& options, const AdamUpdate& adam,
+                    float* logits) override {
     std::vector<float> keep;
     const TorchBatch given = describe(batch, options, keep);
     const TorchStepOptions torch_options = describe(options);
     const AdamOptions& a = adam.options;
     const TorchAdam torch_adam = {a.learning_rate, a.beta1, a.beta2, a.epsilon, a.weight_decay, adam.step, adam.keep};
-    TorchLosses losses;
-    check(api_.update(engine_, &given, &torch_options, &torch_adam, logits, &losses));
+    check(api_.begin_update(engine_, &given, &torch_options, &torch_adam));
+    begun_ = {options, logits};
     moved_ = true;
-    return result(losses, options);
+  }
+  Losses end_update() override {
+    TorchLosses losses;
+    check(api_.end_update(engine_, begun_.logits, &losses));
+    return result(losses, begun_.options);
   }
   void give_back() override {
     if (!moved_) return;
-    check(api_.give_back(engine_, &arrays_));
+    if (value_)
+      check(api_.give_back_ppo(engine_, &ppo_arrays_));
+    else
+      check(api_.give_back(engine_, &arrays_));
     moved_ = false;
+  }
+
+  void take_ppo(ValueFunction& value, const PpoArrays& a) override {
+    value_ = &value;
+    ppo_arrays_ = {a.parameters, a.statistics, a.mean_squares, a.value_parameters, a.value_mean_squares};
+    std::vector<TorchTensor> tensors;
+    const TorchLayout layout = synpo::describe(value.parameters(), tensors);
+    check(api_.take_ppo(engine_, &layout, &ppo_arrays_));
+  }
+  PpoLosses update_ppo(Parallel&, const PpoBatch& batch, const PpoUpdate& update) override {
+    std::vector<float> keep;
+    const StepOptions auxiliary = {update.auxiliary};
+    const TorchPpoBatch given = {describe(batch.steps, auxiliary, keep), batch.log_probability, batch.advantage,
+                                 batch.target};
+    const auto rmsprop = [](const RmsPropOptions& o) {
+      return TorchRmsProp{o.learning_rate, o.smoothing, o.epsilon, o.weight_decay};
+    };
+    const TorchPpoOptions options = {describe(auxiliary),  update.clipping.clip, update.clipping.entropy,
+                                     update.value_weight,  update.gradient_norm, rmsprop(update.policy),
+                                     rmsprop(update.value)};
+    TorchPpoLosses from;
+    check(api_.update_ppo(engine_, &given, &options, &from));
+    moved_ = true;
+    PpoLosses losses;
+    static_cast<ClippedLosses&>(losses) = {from.policy,        from.entropy,       from.kl,
+                                           from.clip_fraction, from.largest_ratio, from.smallest_ratio};
+    losses.value = from.value;
+    losses.total = from.total;
+    return losses;
   }
 
  private:
@@ -193,7 +222,14 @@ class TorchEngine : public Engine {
   int unit_;
   void* engine_ = nullptr;
   std::vector<std::pair<int, int>> pairs_;
+  struct Begun {
+    StepOptions options;
+    float* logits = nullptr;
+  };
+  Begun begun_;  // the last update
   TorchArrays arrays_ = {};
+  ValueFunction* value_ = nullptr;  // of PPO, where that has taken arrays
+  TorchPpoArrays ppo_arrays_ = {};
   bool moved_ = false;  // since the arrays were taken or given back
 };
 

@@ -121,6 +121,11 @@ void Imitation::compute_on(const DeviceOptions& device) {
   engine_has_all_ = false;
 }
 
+void Imitation::compute_with(const std::function<std::unique_ptr<Engine>(Policy<float>&)>& make) {
+  model_.engine = make(*model_.policy);
+  engine_has_all_ = false;
+}
+
 void Imitation::give_to_engine() {
   const bool averaged = options_.averaging > 0;
   model_.engine->take({model_.parameters.data(), model_.statistics.data(), first_moment_.data(), second_moment_.data(),
@@ -128,48 +133,66 @@ void Imitation::give_to_engine() {
   engine_has_all_ = true;
 }
 
+void Imitation::draw(const RunningOptions& running) {
+  batch_.needs = model_.policy->needs();
+  if (options_.batch_states > 0) {
+    running_.set_options(running);
+    running_.draw(memory_, parallel_, int(options_.batch_states), model_.window, model_.updates, batch_);
+  } else {
+    TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed,
+                         model_.updates, batch_);
+  }
+}
+
 bool Imitation::learn() {
   if (memory_.size() == 0) return false;
   const bool single_steps = options_.batch_states > 0;
-  batch_.needs = model_.policy->needs();
-  running_.set_options(options_.running_options(model_.updates, total_updates_));
-  if (single_steps)
-    running_.draw(memory_, parallel_, int(options_.batch_states), model_.window, model_.updates, batch_);
-  else
-    TrajectoryDraw::draw(world_, memory_, parallel_, int(options_.trajectories), model_.window, model_.seed,
-                         model_.updates, batch_);
+  const RunningOptions running = options_.running_options(model_.updates, total_updates_);
+  draw(running);
+  settle();  // the update before, which the engine may have computed meanwhile
 
-  const int n = batch_.size(), actions = world_.actions();
-  logits_.grow(size_t(n) * actions);
+  std::swap(batch_, learning_);
+  const int n = learning_.size();
+  logits_.grow(size_t(n) * world_.actions());
   const StepBatch<float> steps = {.size = n,
-                                  .observations = batch_.observations.data(),
-                                  .env = batch_.env.data(),
-                                  .task = batch_.task.data(),
-                                  .label = batch_.label.data(),
-                                  .taken = batch_.taken.data(),
-                                  .reward = batch_.reward.data(),
+                                  .observations = learning_.observations.data(),
+                                  .env = learning_.env.data(),
+                                  .task = learning_.task.data(),
+                                  .label = learning_.label.data(),
+                                  .taken = learning_.taken.data(),
+                                  .reward = learning_.reward.data(),
                                   .seed = model_.seed,
                                   .update = uint64_t(model_.updates),
-                                  .next = batch_.next.data(),
-                                  .planner_q = batch_.planner_q.data()};
+                                  .next = learning_.next.data(),
+                                  .planner_q = learning_.planner_q.data()};
   // The first updates' weights are far from where the average should be.
   AdamUpdate adam = {options_.adam(), model_.updates + 1,
                      std::min(options_.averaging, (1.0 + model_.updates) / (10.0 + model_.updates))};
   adam.options.learning_rate = options_.rate(model_.updates, total_updates_);
   if (!engine_has_all_) give_to_engine();
-  const Losses losses = model_.engine->update(parallel_, steps, options_.step(), adam, logits_.data());
-  check_finite(losses.total, model_.updates + 1);
+  model_.engine->begin_update(parallel_, steps, options_.step(), adam, logits_.data());
+  unsettled_ = true;
+  ++model_.updates;
+  model_.states += n;
+  // Running episodes go on before anything is read: by the learner's own moves, or without them.
+  const bool own_moves = single_steps && running.roll_in > 0;
+  if (own_moves) settle();
+  if (single_steps) running_.advance(memory_, greedy_, model_.updates - 1);
+  return true;
+}
 
+void Imitation::settle() {
+  if (!std::exchange(unsettled_, false)) return;
+  const Losses losses = model_.engine->end_update();
+  check_finite(losses.total, model_.updates);
+  const int n = learning_.size(), actions = world_.actions();
   greedy_.resize(n);
   for (int i = 0; i < n; ++i) {
     greedy_[i] = argmax(logits_.data() + size_t(i) * actions, actions);
-    const int kind = int(batch_.kind[i]);
+    const int kind = int(learning_.kind[i]);
     ++kind_count_[kind];
-    kind_right_[kind] += greedy_[i] == batch_.label[i];
+    kind_right_[kind] += greedy_[i] == learning_.label[i];
   }
-  if (single_steps) running_.advance(memory_, greedy_, model_.updates);
-  ++model_.updates;
-  model_.states += n;
   ++reported_updates_;
   reported_states_ += n;
   loss_sum_.total += losses.total;
@@ -177,10 +200,10 @@ bool Imitation::learn() {
   loss_sum_.reward += losses.reward;
   loss_sum_.env += losses.env;
   loss_sum_.task += losses.task;
-  return true;
 }
 
 RunLogRow Imitation::take_report() {
+  settle();
   RunLogRow row;
   row.update = model_.updates;
   row.states = model_.states;
@@ -203,12 +226,14 @@ RunLogRow Imitation::take_report() {
 }
 
 RunLogRow::Evaluation Imitation::evaluate_sample(int episodes) {
+  settle();
   model_.engine->give_back();
   return synpo::evaluate_sample(parallel_, world_, model_, best_parameters().data(), best_statistics().data(),
                                 episodes);
 }
 
-Checkpoint Imitation::checkpoint(bool with_training_state) const {
+Checkpoint Imitation::checkpoint(bool with_training_state) {
+  settle();
   model_.engine->give_back();
   Checkpoint c = describe_model(model_, world_);
   c.options = describe_options(options_);

@@ -1,6 +1,8 @@
 // Imitation learning (Algorithm 1): a stream of expert trajectories in, a trained model out.
 #pragma once
 #include <cstdint>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -8,6 +10,7 @@
 #include "base/hash.h"
 #include "base/parallel.h"
 #include "engine/device.h"
+#include "engine/engine.h"
 #include "format/checkpoint.h"
 #include "format/run_log.h"
 #include "learn/memory.h"
@@ -17,6 +20,7 @@
 #include "play/model.h"
 #include "play/stream.h"
 #include "policy/losses.h"
+#include "policy/policy.h"
 #include "world/world.h"
 
 namespace synpo {
@@ -36,6 +40,8 @@ class Imitation {
   void take_weights(const Model& other);
   // Computes there from the first update on; without a call, on the CPU.
   void compute_on(const DeviceOptions& device);
+  // The same with another engine, made for the policy.
+  void compute_with(const std::function<std::unique_ptr<Engine>(Policy<float>&)>& make);
 
   // One update: reads, then draws and learns.
   bool update(TrajectoryStream& stream) {
@@ -45,8 +51,11 @@ class Imitation {
   // What is due before the next update. Throws Stopped, and is as it was before, where a stop signal comes while the
   // stream is read.
   void read(TrajectoryStream& stream);
-  // False when there is nothing to draw from: the stream ended before its first trajectory.
+  // False when there is nothing to draw from: the stream ended before its first trajectory. Where what is drawn next
+  // does not depend on it, the engine may still be computing afterwards.
   bool learn();
+  // Waits for it. Called where results are asked for; also due before a time is taken.
+  void settle();
 
   // The stream stood here; a resumed run skips to there.
   uint64_t stream_lines() const { return stream_lines_; }
@@ -67,12 +76,13 @@ class Imitation {
   // each; the same ones at every call. NaN where there are no such pairs.
   RunLogRow::Evaluation evaluate_sample(int episodes);
 
-  Checkpoint checkpoint(bool with_training_state) const;
+  Checkpoint checkpoint(bool with_training_state);
 
  private:
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved);
   // Hands the arrays over to the engine.
   void give_to_engine();
+  void draw(const RunningOptions& running);
   // These are evaluated and saved: the averaged weights where there are any.
   const Buffer<float>& best_parameters() const { return options_.averaging > 0 ? average_ : model_.parameters; }
   const Buffer<float>& best_statistics() const {
@@ -86,7 +96,8 @@ class Imitation {
   ReplayMemory memory_;
   RunningDraw running_;
   Buffer<float> first_moment_, second_moment_, average_, average_statistics_, logits_;
-  Minibatch batch_;
+  Minibatch batch_, learning_;  // drawn; given to the engine
+  bool unsettled_ = false;      // the engine has results of the last update
   std::vector<int> greedy_;
   bool engine_has_all_ = false;  // parameters, statistics and moments
   int64_t total_updates_ = 0;

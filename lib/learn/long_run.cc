@@ -63,6 +63,7 @@ int LongRun::drive(const char* tool, LongWork& work) const {
       const int64_t update = work.updates();
       const bool last = work.finished();
       if (reports(update, last)) {
+        work.settle();
         const TimePoint moment = now();
         note = work.report({outputs.log(), progress, seconds_between(start, moment), seconds_between(reported, moment),
                             evaluates(update, last) ? evaluate_episodes : 0});

@@ -52,6 +52,8 @@ class LongWork {
   virtual void begin() {}
   // Throws Stopped, and is as it was before, where a stop signal comes while it waits for data.
   virtual void update(Progress& progress) = 0;
+  // Waits for what the last update may have left to be computed beside the next one: before a time is taken.
+  virtual void settle() {}
   // Called after the last update, unless a signal stopped the run.
   virtual void end() {}
 
@@ -72,7 +74,7 @@ class LongWork {
   };
   // Writes a row of the log; returns what stands beside the bar until the next one.
   virtual std::string report(const Report& report) = 0;
-  virtual Checkpoint checkpoint(bool with_training_state) const = 0;
+  virtual Checkpoint checkpoint(bool with_training_state) = 0;
 };
 
 // A long run writes a checkpoint at its end, one to go on from now and then, and a log.

@@ -65,7 +65,8 @@ class RunningDraw {
   // The next `count` running episodes, each at its next step to be taken. Where the batch needs next steps, half as
   // many, and the steps after them, as the taken actions lead there.
   void draw(const ReplayMemory& memory, Parallel& parallel, int count, int window, int64_t update, Minibatch& batch);
-  // Moves the episodes of the last draw() on, given the learner's greedy actions [count].
+  // Moves the episodes of the last draw() on, given the learner's greedy actions [count], which are not read without
+  // roll-in.
   void advance(const ReplayMemory& memory, const std::vector<int>& greedy, int64_t update);
 
   void save(SafeTensors& file, const std::string& prefix) const;

@@ -99,6 +99,7 @@ void Training::update(Progress& progress) {
 }
 
 void Training::tell_total(Progress& progress) {
+  run_->settle();
   const int64_t done = run_->updates() - first_;
   const double elapsed_s = seconds_since(start_);
   if (done <= slow_) return;

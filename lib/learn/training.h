@@ -68,7 +68,8 @@ class Training : public LongWork {
   uint64_t total() const override;
   const std::vector<std::string>& columns() const override { return run_log_columns(); }
   std::string report(const Report& report) override;
-  Checkpoint checkpoint(bool with_training_state) const override { return run_->checkpoint(with_training_state); }
+  void settle() override { run_->settle(); }
+  Checkpoint checkpoint(bool with_training_state) override { return run_->checkpoint(with_training_state); }
 
  private:
   void check_length();

@@ -16,6 +16,7 @@ namespace {
 constexpr int kInts = 5;                              // env, task, label, taken, next
 constexpr int kGap = 16;                              // values at most between two tensors of a layout
 enum Number { kRate, kCorrection, kMove, kNumbers };  // of an update, at the beginning of the floats
+constexpr int kFloats = 4;  // of a state: reward; log-probability, advantage and target of PPO
 
 NetworkSizes sizes_of(const TorchConfig& c, const torch::Device& device) {
   NetworkSizes s;
@@ -105,7 +106,7 @@ void Learner::download(const torch::Tensor& from, float* to) const {
 void Learner::make_room(Exchange& exchange, int64_t n) {
   if (n <= exchange.capacity) return;
   replay_.forget();
-  const int64_t floats = kNumbers + n * (2 + sizes_.actions + seam_ + sizes_.feature),
+  const int64_t floats = kNumbers + n * (kFloats + sizes_.actions + seam_ + sizes_.feature),
                 results = kLossKinds + n * (sizes_.actions + sizes_.feature);
   exchange.capacity = n;
   exchange.host_bytes = replay_.host_memory(n * observation_bytes_);
@@ -119,7 +120,8 @@ void Learner::make_room(Exchange& exchange, int64_t n) {
 }
 
 // Copies a batch and some numbers beside it to the device. What is null is left as it is.
-Inputs Learner::send(Exchange& exchange, const TorchBatch& batch, const double* numbers, int count) {
+Inputs Learner::send(Exchange& exchange, const TorchBatch& batch, const double* numbers, int count,
+                     const TorchPpoBatch* ppo) {
   const int64_t n = batch.size;
   make_room(exchange, n);
   if (batch.observations)
@@ -137,6 +139,9 @@ Inputs Learner::send(Exchange& exchange, const TorchBatch& batch, const double* 
     floats += n * width;
   };
   put(batch.reward, 1);
+  put(ppo ? ppo->log_probability : nullptr, 1);
+  put(ppo ? ppo->advantage : nullptr, 1);
+  put(ppo ? ppo->target : nullptr, 1);
   put(batch.planner_q, sizes_.actions);
   put(batch.keep, seam_);
   put(batch.psi, sizes_.feature);
@@ -164,6 +169,9 @@ Inputs Learner::inputs(const Exchange& exchange, int64_t n, bool psi) const {
     return exchange.floats.narrow(0, at - n * width, n * width);
   };
   in.reward = take(1);
+  in.log_probability = take(1);
+  in.advantage = take(1);
+  in.target = take(1);
   in.planner_q = take(sizes_.actions).view({n, -1});
   in.keep = take(seam_).view({n, seam_});
   const torch::Tensor given = take(sizes_.feature).view({n, -1});
@@ -172,17 +180,17 @@ Inputs Learner::inputs(const Exchange& exchange, int64_t n, bool psi) const {
 }
 
 // The gradients of all tensors, laid out as the parameters; zero where a tensor has none.
-torch::Tensor Learner::flat_gradient(const std::vector<torch::Tensor>& gradients) const {
+torch::Tensor Learner::flat_gradient(const Layout& layout, const std::vector<torch::Tensor>& gradients) const {
   std::vector<torch::Tensor> parts;
   size_t at = 0;
   for (size_t i = 0; i < gradients.size(); ++i) {
-    const TorchTensor& tensor = parameters_.tensors[i];
+    const TorchTensor& tensor = layout.tensors[i];
     if (tensor.offset > at) parts.push_back(zeros_.narrow(0, 0, int64_t(tensor.offset - at)));
     parts.push_back(gradients[i].defined() ? gradients[i].reshape({-1})
                                            : torch::zeros({int64_t(tensor.size)}, device_));
     at = tensor.offset + tensor.size;
   }
-  if (parameters_.view.total > at) parts.push_back(zeros_.narrow(0, 0, int64_t(parameters_.view.total - at)));
+  if (layout.view.total > at) parts.push_back(zeros_.narrow(0, 0, int64_t(layout.view.total - at)));
   return torch::cat(parts);
 }
 
@@ -204,13 +212,15 @@ void Learner::put_results(Exchange& exchange, const Outputs& out) const {
   exchange.results.narrow(0, kLossKinds, out.logits.numel()).copy_(out.logits.reshape({-1}));
 }
 
+// They are there when the work is finished.
+void Learner::ask_results(Exchange& exchange, int64_t count) const {
+  exchange.host_results.narrow(0, 0, count).copy_(exchange.results.narrow(0, 0, count), true);
+}
+
 TorchLosses Learner::fetch_results(Exchange& exchange, int64_t n, float* logits) const {
-  const int64_t scores = n * sizes_.actions;
-  exchange.host_results.narrow(0, 0, kLossKinds + scores)
-      .copy_(exchange.results.narrow(0, 0, kLossKinds + scores), true);
   replay_.finish();
   const float* results = exchange.host_results.data_ptr<float>();
-  std::copy_n(results + kLossKinds, scores, logits);
+  std::copy_n(results + kLossKinds, n * sizes_.actions, logits);
   TorchLosses losses;
   for (int kind = 0; kind < kLossKinds; ++kind)
     losses.values[kind] =
@@ -218,45 +228,23 @@ TorchLosses Learner::fetch_results(Exchange& exchange, int64_t n, float* logits)
   return losses;
 }
 
-TorchLosses Learner::step(const TorchBatch& batch, const TorchStepOptions& options, const TorchObjective* objective,
-                          const float* parameters, float* statistics, float* gradient, float* logits) {
+TorchLosses Learner::step(const TorchBatch& batch, const TorchStepOptions& options, const float* parameters,
+                          float* statistics, float* gradient, float* logits) {
   const auto entered = replay_.enter();
   if (!step_.parameters.defined()) step_ = make_weights(true);
   upload(parameters, step_.parameters);
   upload(statistics, step_.statistics);
   const Inputs in = send(exchange_, batch, nullptr, 0);
-  const int64_t n = batch.size;
-  std::vector<torch::Tensor> roots, gradients;
-  torch::Tensor psi = in.psi;
-  if (!psi.defined())
-    psi = encode(sizes_, step_.w, step_.running, in.observations, batch.frozen_statistics);
-  else if (objective)
-    psi = psi.detach().requires_grad_();
-  const Outputs out = head_->learn(step_.w, psi, in, options.discount, !objective);
+  const torch::Tensor psi =
+      in.psi.defined() ? in.psi : encode(sizes_, step_.w, step_.running, in.observations, batch.frozen_statistics);
+  const Outputs out = head_->learn(step_.w, psi, in, options.discount, true);
   put_results(exchange_, out);
-  TorchLosses losses = fetch_results(exchange_, n, logits);
-  const torch::Tensor total = total_loss(out, options);
-  if (total.defined()) {
-    roots.push_back(total);
-    gradients.push_back(torch::ones_like(total));
-  }
-  if (objective) {
-    std::vector<float> host_psi(size_t(n * sizes_.feature)), dpsi(host_psi.size(), 0.0f),
-        dlogits(size_t(n * sizes_.actions));
-    download(psi.detach().contiguous(), host_psi.data());
-    losses.values[kPolicyLoss] =
-        objective->apply(objective->context, batch.size, host_psi.data(), logits, dlogits.data(), dpsi.data());
-    const auto add = [&](const torch::Tensor& root, std::vector<float>& values) {
-      roots.push_back(root);
-      gradients.push_back(
-          torch::from_blob(values.data(), root.sizes(), torch::kFloat32).to(device_, torch::kFloat32, false, true));
-    };
-    add(out.logits, dlogits);
-    if (psi.requires_grad()) add(psi, dpsi);
-  }
-  const std::vector<torch::Tensor> result = torch::autograd::grad(roots, step_.w.all(), gradients, false, false, true);
+  ask_results(exchange_, kLossKinds + batch.size * sizes_.actions);
+  const TorchLosses losses = fetch_results(exchange_, batch.size, logits);
+  const std::vector<torch::Tensor> gradients =
+      torch::autograd::grad({total_loss(out, options)}, step_.w.all(), {}, false, false, true);
   torch::NoGradGuard no_gradient;
-  download(flat_gradient(result), gradient);
+  download(flat_gradient(parameters_, gradients), gradient);
   if (!batch.frozen_statistics && !batch.psi) download(step_.statistics, statistics);
   replay_.finish();
   return losses;
@@ -264,11 +252,9 @@ TorchLosses Learner::step(const TorchBatch& batch, const TorchStepOptions& optio
 
 void Learner::take(const TorchArrays& arrays) {
   const auto entered = replay_.enter();
-  if (!training_.parameters.defined()) {
-    training_ = make_weights(true);
-    first_moment_ = torch::zeros_like(training_.parameters);
-    second_moment_ = torch::zeros_like(training_.parameters);
-  }
+  if (!training_.parameters.defined()) training_ = make_weights(true);
+  if (!second_moment_.defined()) second_moment_ = torch::zeros_like(training_.parameters);
+  if (!first_moment_.defined()) first_moment_ = torch::zeros_like(training_.parameters);
   replay_.forget();
   upload(arrays.parameters, training_.parameters);
   upload(arrays.statistics, training_.statistics);
@@ -297,8 +283,7 @@ void Learner::adam(const torch::Tensor& gradient, const TorchAdam& options, cons
   average_statistics_.lerp_(training_.statistics, numbers[kMove]);
 }
 
-TorchLosses Learner::update(const TorchBatch& batch, const TorchStepOptions& options, const TorchAdam& adam_options,
-                            float* logits) {
+void Learner::begin_update(const TorchBatch& batch, const TorchStepOptions& options, const TorchAdam& adam_options) {
   const auto entered = replay_.enter();
   double numbers[kNumbers];
   numbers[kRate] = adam_options.learning_rate / (1 - std::pow(adam_options.beta1, double(adam_options.step)));
@@ -313,10 +298,16 @@ TorchLosses Learner::update(const TorchBatch& batch, const TorchStepOptions& opt
     const std::vector<torch::Tensor> gradients =
         torch::autograd::grad({total_loss(out, options)}, training_.w.all(), {}, false, false, true);
     torch::NoGradGuard no_gradient;
-    adam(flat_gradient(gradients), adam_options, exchange_.floats.narrow(0, 0, kNumbers));
+    adam(flat_gradient(parameters_, gradients), adam_options, exchange_.floats.narrow(0, 0, kNumbers));
     put_results(exchange_, out);
   });
-  return fetch_results(exchange_, n, logits);
+  ask_results(exchange_, kLossKinds + n * sizes_.actions);
+  begun_ = n;
+}
+
+TorchLosses Learner::end_update(float* logits) {
+  const auto entered = replay_.enter();
+  return fetch_results(exchange_, begun_, logits);
 }
 
 void Learner::give_back(const TorchArrays& arrays) {
@@ -366,8 +357,7 @@ void Learner::infer(int unit, int size, const uint8_t* observations, const int* 
     exchange.results.narrow(0, kLossKinds, scores).copy_(head_->scores(inference_.w, feature, in).reshape({-1}));
     exchange.results.narrow(0, kLossKinds + scores, features).copy_(feature.reshape({-1}));
   });
-  const int64_t wanted = kLossKinds + scores + (psi ? features : 0);
-  exchange.host_results.narrow(0, 0, wanted).copy_(exchange.results.narrow(0, 0, wanted), true);
+  ask_results(exchange, kLossKinds + scores + (psi ? features : 0));
   replay_.finish();
   const float* results = exchange.host_results.data_ptr<float>() + kLossKinds;
   std::copy_n(results, int64_t(size) * sizes_.actions, logits);

@@ -33,6 +33,7 @@ struct Inputs {
   torch::Tensor psi;           // [n, feature], in place of observations where it is defined
   torch::Tensor env, task, label, taken, next;
   torch::Tensor reward, planner_q, keep;
+  torch::Tensor log_probability, advantage, target;  // of PPO
 };
 
 enum LossKind { kPolicyLoss, kRewardLoss, kEnvLoss, kTaskLoss, kLossKinds };

@@ -37,18 +37,26 @@ constexpr TorchApi kApi = {
     },
     [](const TorchConfig* config, void** engine) { return guarded([&] { *engine = new Learner(*config); }); },
     [](void* engine) { guarded([&] { delete &learner(engine); }); },
-    [](void* engine, const TorchBatch* batch, const TorchStepOptions* options, const TorchObjective* objective,
-       const float* parameters, float* statistics, float* gradient, float* logits, TorchLosses* losses) {
-      return guarded([&] {
-        *losses = learner(engine).step(*batch, *options, objective, parameters, statistics, gradient, logits);
-      });
+    [](void* engine, const TorchBatch* batch, const TorchStepOptions* options, const float* parameters,
+       float* statistics, float* gradient, float* logits, TorchLosses* losses) {
+      return guarded(
+          [&] { *losses = learner(engine).step(*batch, *options, parameters, statistics, gradient, logits); });
     },
     [](void* engine, const TorchArrays* arrays) { return guarded([&] { learner(engine).take(*arrays); }); },
-    [](void* engine, const TorchBatch* batch, const TorchStepOptions* options, const TorchAdam* adam, float* logits,
-       TorchLosses* losses) {
-      return guarded([&] { *losses = learner(engine).update(*batch, *options, *adam, logits); });
+    [](void* engine, const TorchBatch* batch, const TorchStepOptions* options, const TorchAdam* adam) {
+      return guarded([&] { learner(engine).begin_update(*batch, *options, *adam); });
+    },
+    [](void* engine, float* logits, TorchLosses* losses) {
+      return guarded([&] { *losses = learner(engine).end_update(logits); });
     },
     [](void* engine, const TorchArrays* arrays) { return guarded([&] { learner(engine).give_back(*arrays); }); },
+    [](void* engine, const TorchLayout* value, const TorchPpoArrays* arrays) {
+      return guarded([&] { learner(engine).take_ppo(*value, *arrays); });
+    },
+    [](void* engine, const TorchPpoBatch* batch, const TorchPpoOptions* options, TorchPpoLosses* losses) {
+      return guarded([&] { *losses = learner(engine).update_ppo(*batch, *options); });
+    },
+    [](void* engine, const TorchPpoArrays* arrays) { return guarded([&] { learner(engine).give_back_ppo(*arrays); }); },
     [](void* engine, const float* parameters, const float* statistics) {
       return guarded([&] { learner(engine).prepare_inference(parameters, statistics); });
     },

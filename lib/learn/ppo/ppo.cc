@@ -13,7 +13,6 @@
 #include "format/safetensors.h"
 #include "learn/finite.h"
 #include "nn/init.h"
-#include "nn/rmsprop.h"
 #include "nn/softmax.h"
 #include "play/episode_batch.h"
 #include "policy/losses.h"
@@ -21,104 +20,24 @@
 #include "policy/policy_shape.h"
 
 namespace synpo {
-namespace {
-
-// A method's row of embeddings, or nothing.
-const float* embedding_row(const Model& model, PairSide side, int row, int width) {
-  const TensorInfo* tensor = model.policy->embeddings(side);
-  return tensor ? model.parameters.data() + tensor->offset + size_t(row) * width : nullptr;
-}
-
-}  // namespace
-
-// The gradient of everything but the auxiliary losses, for the rows of a minibatch.
-class Ppo::RolloutObjective : public Objective<float> {
- public:
-  RolloutObjective(Ppo& ppo, const std::vector<int>& rows) : ppo_(ppo), rows_(rows) {}
-
-  double apply(Parallel& parallel, int n, const float* psi, const float* logits, float* dlogits, float* dpsi) override {
-    const ClippingOptions& options = ppo_.options_.clipping;
-    const Rollout& rollout = ppo_.rollout_;
-    const std::vector<int> action = gathered(rollout.action, rows_);
-    const std::vector<float> log_probability = gathered(rollout.log_probability, rows_),
-                             advantage = gathered(rollout.advantage, rows_);
-    static_cast<ClippedLosses&>(result) = clipped_objective(
-        {n, action.data(), log_probability.data(), advantage.data()}, options, ppo_.world_.actions(), logits, dlogits);
-    result.value = learn_value(parallel, n, psi, dpsi);
-    return result.policy + ppo_.options_.value_loss * result.value - options.entropy * result.entropy;
-  }
-
-  Minibatch result;
-
- private:
-  // The value's loss; its gradient to the value's own weights, and dpsi +=.
-  double learn_value(Parallel& parallel, int n, const float* psi, float* dpsi) {
-    const int d = ppo_.model_.shape.feature, in = ppo_.value_inputs();
-    std::vector<float> x(size_t(n) * in), dx(x.size()), dvalue(n);
-    for (int i = 0; i < n; ++i)
-      ppo_.make_value_input(psi + size_t(i) * d, ppo_.rollout_.env[rows_[i]], ppo_.rollout_.task[rows_[i]],
-                            x.data() + size_t(i) * in);
-    const float* value = ppo_.value_->forward(parallel, n, x.data(), ppo_.value_parameters_.data());
-    const double loss = value_loss(n, value, gathered(ppo_.rollout_.target, rows_).data(), dvalue.data());
-    std::fill(ppo_.value_gradient_.begin(), ppo_.value_gradient_.end(), 0.0f);
-    ppo_.value_->backward(parallel, x.data(), dvalue.data(), dx.data(), false, ppo_.value_parameters_.data(),
-                          ppo_.value_gradient_.data());
-    // RMSProp would undo a weight in the value's own gradients: it is what psi hears of the value.
-    const float weight = float(ppo_.options_.value_loss);
-    for (int i = 0; i < n; ++i)
-      for (int c = 0; c < d; ++c) dpsi[size_t(i) * d + c] += weight * dx[size_t(i) * in + c];
-    for (float& gradient : ppo_.value_gradient_) gradient *= weight;
-    return loss;
-  }
-
-  Ppo& ppo_;
-  const std::vector<int>& rows_;
-};
 
 Ppo::Ppo(const World& world, Parallel& parallel, Model model, const PpoOptions& options, uint64_t seed)
     : world_(world), parallel_(parallel), options_(options), seed_(seed), model_(std::move(model)),
       actors_(world, model_.seen, options.lanes, seed) {
   if (size() % options_.minibatches != 0)
     fail(Exit::kUsage, size(), " steps of a rollout cannot be cut into ", options_.minibatches, " minibatches");
-  value_ = std::make_unique<Perceptron<float>>("value", value_inputs(), options_.value_hidden, 1, value_layout_);
-  value_parameters_.assign(value_layout_.total(), 0);
-  value_gradient_.assign(value_layout_.total(), 0);
-  value_v_.assign(value_layout_.total(), 0);
+  value_ = std::make_unique<ValueFunction>(model_.shape, *model_.policy, options_.value_hidden);
+  value_parameters_.assign(value_->parameters().total(), 0);
+  value_v_.assign(value_->parameters().total(), 0);
   InitStream stream(seed, 2);
   value_->initialise(stream, value_parameters_.data());
-  for (Buffer<float>* buffer : {&gradient_, &v_}) {  // what lies between tensors counts in the gradient's length
-    buffer->grow(model_.parameters.size());
-    buffer->zero();
-  }
-}
-
-int Ppo::value_inputs() const {
-  const PolicyShape& shape = model_.shape;
-  const auto width = [&](PairSide side, int count) {
-    return model_.policy->embeddings(side) ? shape.embedding : count;
-  };
-  return shape.feature + width(PairSide::kEnv, shape.envs) + width(PairSide::kTask, shape.tasks);
-}
-
-void Ppo::make_value_input(const float* psi, int env, int task, float* x) const {
-  const PolicyShape& shape = model_.shape;
-  x = std::copy_n(psi, shape.feature, x);
-  const auto put = [&](PairSide side, int row, int count) {
-    if (const float* embedding = embedding_row(model_, side, row, shape.embedding)) {
-      x = std::copy_n(embedding, shape.embedding, x);
-      return;
-    }
-    std::fill_n(x, count, 0.0f);
-    x[row] = 1;
-    x += count;
-  };
-  put(PairSide::kEnv, env, shape.envs);
-  put(PairSide::kTask, task, shape.tasks);
+  v_.grow(model_.parameters.size());
+  v_.zero();
 }
 
 void Ppo::measure_statistics(int batches) {
   const int actions = world_.actions();
-  std::vector<float> logits;
+  std::vector<float> logits, gradient(model_.parameters.size());
   for (int batch = 0; batch < batches; ++batch) {
     const int n = 512;
     std::vector<uint8_t> observations(n * world_.observation_size());
@@ -142,14 +61,14 @@ void Ppo::measure_statistics(int batches) {
                                     .label = action.data(),
                                     .taken = action.data(),
                                     .reward = reward.data()};
-    model_.engine->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient_.data(),
+    model_.engine->step(parallel_, steps, {}, model_.parameters.data(), model_.statistics.data(), gradient.data(),
                         logits.data());
   }
   actors_.take_finished();
 }
 
 void Ppo::look(const std::vector<int>& actors, uint8_t* observations, float* logits, float* psi, float* values) {
-  const int n = int(actors.size()), d = model_.shape.feature, in = value_inputs(), actions = world_.actions();
+  const int n = int(actors.size()), d = model_.shape.feature, actions = world_.actions();
   // As many as may be at once: every batch reads all weights. An actor's scores do not depend on who is with it.
   const int together = std::min(model_.engine->inference_unit(), (n + parallel_.threads() - 1) / parallel_.threads());
   parallel_.run(shard_count(n, together), [&](int shard, int thread) {
@@ -157,17 +76,15 @@ void Ppo::look(const std::vector<int>& actors, uint8_t* observations, float* log
     const std::span<const int> part(actors.data() + range.begin, size_t(range.size()));
     uint8_t* seen = observations + range.begin * world_.observation_size();
     actors_.episodes().observe(part, model_.window, seen);
-    std::vector<int> pair;
-    for (const int actor : part) pair.push_back(actors_.pair_number(actor));
-    std::vector<float> x(size_t(range.size()) * in);
-    Buffer<float> scratch;
-    model_.engine->infer(thread, range.size(), seen, pair.data(), logits + size_t(range.begin) * actions,
-                         psi + size_t(range.begin) * d);
-    for (int i = range.begin; i < range.end; ++i) {
-      const EnvTask at = actors_.episodes()[actors[i]].pair;
-      make_value_input(psi + size_t(i) * d, at.env, at.task, x.data() + size_t(i - range.begin) * in);
+    std::vector<int> pair, env, task;
+    for (const int actor : part) {
+      pair.push_back(actors_.pair_number(actor));
+      env.push_back(actors_.episodes()[actor].pair.env);
+      task.push_back(actors_.episodes()[actor].pair.task);
     }
-    value_->infer(range.size(), x.data(), values + range.begin, scratch);
+    float* features = psi + size_t(range.begin) * d;
+    model_.engine->infer(thread, range.size(), seen, pair.data(), logits + size_t(range.begin) * actions, features);
+    value_->infer(range.size(), features, env.data(), task.data(), model_.parameters.data(), values + range.begin);
   });
 }
 
@@ -244,42 +161,38 @@ void Ppo::collect() {
     advantage = float((advantage - mean) / (std::sqrt(std::max(0.0, variance)) + 1e-8));
 }
 
-void Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
-  const int n = int(rows.size()), actions = world_.actions();
+PpoLosses Ppo::learn_minibatch(const std::vector<int>& rows, bool value_alone) {
   const std::vector<uint8_t> observations = gathered(rollout_.observations, rows, world_.observation_size());
   const std::vector<int> env = gathered(rollout_.env, rows), task = gathered(rollout_.task, rows),
                          action = gathered(rollout_.action, rows);
-  const std::vector<float> reward = gathered(rollout_.reward, rows);
-  std::vector<float> logits(size_t(n) * actions);
-  RolloutObjective objective(*this, rows);
-  const StepBatch<float> batch = {.size = n,
-                                  .observations = observations.data(),
-                                  .env = env.data(),
-                                  .task = task.data(),
-                                  .label = action.data(),
-                                  .taken = action.data(),
-                                  .reward = reward.data(),
-                                  .objective = &objective,
-                                  .frozen_statistics = true};
-  const Losses losses = model_.engine->step(parallel_, batch, {options_.losses}, model_.parameters.data(),
-                                            model_.statistics.data(), gradient_.data(), logits.data());
-  check_finite(losses.total, updates_ + 1);
-  const size_t count = model_.policy->parameters().total(), value_count = value_layout_.total();
-  const double length = std::sqrt(sum_of_squares(parallel_, count, gradient_.data()) +
-                                  sum_of_squares(parallel_, value_count, value_gradient_.data()));
-  const float factor = float(clip_factor(length, options_.gradient_norm));
+  const std::vector<float> reward = gathered(rollout_.reward, rows),
+                           log_probability = gathered(rollout_.log_probability, rows),
+                           advantage = gathered(rollout_.advantage, rows), target = gathered(rollout_.target, rows);
+  const PpoBatch batch = {.steps = {.size = int(rows.size()),
+                                    .observations = observations.data(),
+                                    .env = env.data(),
+                                    .task = task.data(),
+                                    .label = action.data(),
+                                    .taken = action.data(),
+                                    .reward = reward.data()},
+                          .actions = world_.actions(),
+                          .log_probability = log_probability.data(),
+                          .advantage = advantage.data(),
+                          .target = target.data()};
+  PpoUpdate update = {options_.losses,        options_.clipping,  options_.value_loss,
+                      options_.gradient_norm, options_.optimiser, options_.optimiser};
   // While the value alone learns, the policy's mean squares are gathered, but it does not move: they start at zero, and
   // the first steps would be ten times as long as those that follow.
-  RmsPropOptions policy_steps = options_.optimiser;
-  if (value_alone) policy_steps.learning_rate = 0;
-  rmsprop_step(parallel_, policy_steps, count, factor, gradient_.data(), model_.parameters.data(), v_.data());
-  rmsprop_step(parallel_, options_.optimiser, value_count, factor, value_gradient_.data(), value_parameters_.data(),
-               value_v_.data());
-  last_ = objective.result;
+  if (value_alone) update.policy.learning_rate = 0;
+  const PpoLosses losses = model_.engine->update_ppo(parallel_, batch, update);
+  check_finite(losses.total, updates_ + 1);
+  return losses;
 }
 
 void Ppo::update() {
   collect();
+  model_.engine->take_ppo(*value_, {model_.parameters.data(), model_.statistics.data(), v_.data(),
+                                    value_parameters_.data(), value_v_.data()});
   const bool value_alone = updates_ < options_.value_warm_up;
   std::vector<int> order(size());
   for (int epoch = 0; epoch < options_.epochs; ++epoch) {
@@ -288,16 +201,17 @@ void Ppo::update() {
     for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(uint32_t(i))]);
     const int rows = size() / options_.minibatches;
     for (int m = 0; m < options_.minibatches; ++m) {
-      learn_minibatch({order.begin() + m * rows, order.begin() + (m + 1) * rows}, value_alone);
-      if (epoch == 0 && m == 0) first_ = last_;
-      report_.policy += last_.policy;
-      report_.value += last_.value;
-      report_.entropy += last_.entropy;
-      report_.kl += last_.kl;
-      report_.clip_fraction += last_.clip_fraction;
+      const PpoLosses losses = learn_minibatch({order.begin() + m * rows, order.begin() + (m + 1) * rows}, value_alone);
+      if (epoch == 0 && m == 0) first_ = losses;
+      report_.policy += losses.policy;
+      report_.value += losses.value;
+      report_.entropy += losses.entropy;
+      report_.kl += losses.kl;
+      report_.clip_fraction += losses.clip_fraction;
       ++reported_minibatches_;
     }
   }
+  model_.engine->give_back();
   ++updates_;
   ++reported_rollouts_;
   model_.states += size();
@@ -323,8 +237,8 @@ Checkpoint Ppo::checkpoint(bool with_training_state) const {
   add_tensors(c.file, "", model_.policy->statistics(), model_.statistics.data());
   if (!with_training_state) return c;
   add_tensors(c.file, "train/ppo/v/", model_.policy->parameters(), v_.data());
-  add_tensors(c.file, "train/ppo/", value_layout_, value_parameters_.data());
-  add_tensors(c.file, "train/ppo/value/v/", value_layout_, value_v_.data());
+  add_tensors(c.file, "train/ppo/", value_->parameters(), value_parameters_.data());
+  add_tensors(c.file, "train/ppo/value/v/", value_->parameters(), value_v_.data());
   actors_.save(c.file, "train/ppo/lanes/");
   const int64_t position[3] = {updates_, steps_, int64_t(seed_)};
   c.file.add("train/ppo/position", {3}, position, 3);
@@ -337,8 +251,8 @@ void Ppo::resume(const Checkpoint& checkpoint) {
     fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
   options_.check_same(checkpoint);
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
-  get_tensors(file, "train/ppo/", value_layout_, value_parameters_.data());
-  get_tensors(file, "train/ppo/value/v/", value_layout_, value_v_.data());
+  get_tensors(file, "train/ppo/", value_->parameters(), value_parameters_.data());
+  get_tensors(file, "train/ppo/value/v/", value_->parameters(), value_v_.data());
   actors_.load(file, "train/ppo/lanes/");
   int64_t position[3];
   file.get("train/ppo/position", position, 3);

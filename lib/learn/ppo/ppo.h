@@ -5,24 +5,22 @@
 //   action taken
 //
 // Advantages are normalised over the rollout. Batch normalisation keeps the statistics that it came with, so that the
-// first minibatch after a rollout has ratio 1. The value V is a perceptron over [psi, e_env, e_task], whose gradient
-// reaches psi and not the embeddings; for a method without one of these, one-hot in its place.
+// first minibatch after a rollout has ratio 1.
 #pragma once
 #include <cstdint>
 #include <memory>
 #include <vector>
 
 #include "base/parallel.h"
+#include "engine/engine.h"
 #include "format/checkpoint.h"
-#include "learn/ppo/clipped_objective.h"
 #include "learn/ppo/gae.h"
 #include "learn/ppo/ppo_options.h"
 #include "nn/buffer.h"
-#include "nn/layers/perceptron.h"
-#include "nn/layout.h"
 #include "play/actors.h"
 #include "play/model.h"
 #include "play/running_episode.h"
+#include "policy/value_function.h"
 #include "world/world.h"
 
 namespace synpo {
@@ -53,14 +51,10 @@ class Ppo {
   PpoReport take_report();
   Checkpoint checkpoint(bool with_training_state) const;
 
-  // Of one minibatch; first_minibatch() is the first after the last rollout.
-  struct Minibatch : ClippedLosses {
-    double value = 0;
-  };
-  const Minibatch& first_minibatch() const { return first_; }
+  // Of the first minibatch after the last rollout.
+  const PpoLosses& first_minibatch() const { return first_; }
 
  private:
-  class RolloutObjective;
   struct Rollout {
     std::vector<uint8_t> observations;
     std::vector<int> env, task, action;
@@ -68,26 +62,23 @@ class Ppo {
     std::vector<StepEnd> end;
   };
   int size() const { return options_.lanes * options_.rollout; }
-  int value_inputs() const;
-  void make_value_input(const float* psi, int env, int task, float* x) const;
   // Scores, psi and values where these actors stand.
   void look(const std::vector<int>& actors, uint8_t* observations, float* logits, float* psi, float* values);
   void collect();
-  void learn_minibatch(const std::vector<int>& rows, bool value_alone);
+  PpoLosses learn_minibatch(const std::vector<int>& rows, bool value_alone);
 
   const World& world_;
   Parallel& parallel_;
   PpoOptions options_;
   uint64_t seed_;
   Model model_;
-  Layout value_layout_;
-  std::unique_ptr<Perceptron<float>> value_;
-  std::vector<float> value_parameters_, value_gradient_, value_v_;
-  Buffer<float> gradient_, v_;
+  std::unique_ptr<ValueFunction> value_;
+  std::vector<float> value_parameters_, value_v_;
+  Buffer<float> v_;
   Actors actors_;
   Rollout rollout_;
   int64_t updates_ = 0, steps_ = 0;
-  Minibatch last_, first_;
+  PpoLosses first_;
   PpoReport report_;
   int reported_minibatches_ = 0, reported_rollouts_ = 0;
 };

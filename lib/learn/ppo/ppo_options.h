@@ -5,8 +5,8 @@
 
 #include "base/cli/options.h"
 #include "format/checkpoint.h"
-#include "learn/ppo/clipped_objective.h"
 #include "learn/ppo/gae.h"
+#include "nn/clipped_objective.h"
 #include "nn/rmsprop.h"
 #include "policy/losses.h"
 

@@ -47,7 +47,7 @@ class Tuning : public LongWork {
   uint64_t total() const override { return uint64_t(steps_); }
   const std::vector<std::string>& columns() const override;
   std::string report(const Report& report) override;
-  Checkpoint checkpoint(bool with_training_state) const override { return run_->checkpoint(with_training_state); }
+  Checkpoint checkpoint(bool with_training_state) override { return run_->checkpoint(with_training_state); }
 
  private:
   Parallel& parallel_;

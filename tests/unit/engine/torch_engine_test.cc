@@ -13,8 +13,9 @@
 #include "engine/device.h"
 #include "helpers/policy_fixture.h"
 #include "kernel/kernels.h"
-#include "learn/ppo/clipped_objective.h"
 #include "learn/recipe.h"
+#include "nn/init.h"
+#include "nn/softmax.h"
 #include "play/world_factory.h"
 
 namespace synpo {
@@ -246,30 +247,79 @@ TEST_P(TorchEngine, AgreesWhereTheFeatureIsGiven) {
   compare_steps(batch);
 }
 
-// PPO's loss of the scores, and a part of it that reaches the feature.
-class SomeObjective : public Objective<float> {
- public:
-  explicit SomeObjective(const RandomSteps<float>& steps, int actions) : steps_(steps), actions_(actions) {}
-  double apply(Parallel&, int n, const float* psi, const float* logits, float* dlogits, float* dpsi) override {
-    const std::vector<float> old(size_t(n), -1.5f);
-    for (int i = 0; i < n; ++i) dpsi[i] += 0.01f * psi[i];
-    return clipped_objective({n, steps_.taken.data(), old.data(), steps_.reward.data()}, {0.2, 0.01}, actions_, logits,
-                             dlogits)
-        .policy;
-  }
-
- private:
-  const RandomSteps<float>& steps_;
-  int actions_;
-};
-
-TEST_P(TorchEngine, AgreesOnAnotherObjective) {
+// A minibatch of PPO: two engines from the same arrays, the next one with the policy's rate changed. RMSProp divides a
+// gradient by its own size, so that a value that is nearly nothing may go anywhere: epsilon is large enough to see
+// differences in gradients instead.
+TEST_P(TorchEngine, AgreesOnPpo) {
   const RandomSteps<float> steps = draw_steps(net.parameters, size_, true);
-  SomeObjective objective(steps, shape.actions);
-  StepBatch<float> batch = steps.batch();
-  batch.objective = &objective;
-  batch.frozen_statistics = true;
-  compare_steps(batch);
+  PpoUpdate update;
+  update.auxiliary = kOptions.weights;
+  update.clipping = {0.2, 0.05};
+  update.value_weight = 0.7;
+  update.gradient_norm = 0.9;
+  update.policy = update.value = {0.0002, 0.9, 0.1, 0.01};
+  update.value.learning_rate = 0.001;
+
+  ValueFunction value(shape, *net.policy, 16);
+  std::vector<float> value_start(value.parameters().total());
+  InitStream stream(5, 2);
+  value.initialise(stream, value_start.data());
+  const std::vector<float> zeros(net.parameters.size(), 0), value_zeros(value_start.size(), 0);
+  struct Arrays {
+    std::vector<float> parameters, statistics, squares, value, value_squares;
+    PpoArrays pointers() {
+      return {parameters.data(), statistics.data(), squares.data(), value.data(), value_squares.data()};
+    }
+  };
+  const Arrays start = {net.parameters, net.statistics, zeros, value_start, value_zeros};
+  Arrays want = start, got = start;
+  CpuEngine cpu(*net.policy);
+  cpu.take_ppo(value, want.pointers());
+  torch->take_ppo(value, got.pointers());
+
+  // Ratios on both sides of the bounds, by old probabilities near the policy's own.
+  const std::vector<float> scores = net.infer(parallel, steps.batch(), 32);
+  double size_of_scores = 1;
+  for (const float score : scores) size_of_scores = std::max(size_of_scores, std::abs(double(score)));
+  std::vector<float> old, target = random_values<float>(size_t(size_), 8),
+                          advantage = random_values<float>(size_t(size_), 7);
+  for (int i = 0; i < size_; ++i) {
+    std::vector<double> p(size_t(shape.actions));
+    const float* row = scores.data() + i * shape.actions;
+    const double log_sum = softmax(row, shape.actions, 1, p.data());
+    old.push_back(float(row[steps.taken[size_t(i)]] - log_sum + 0.15 * (i % 5 - 2)));
+  }
+  const PpoBatch batch = {steps.batch(), shape.actions, old.data(), advantage.data(), target.data()};
+  for (const double rate : {0.0002, 0.0, 0.0001}) {
+    update.policy.learning_rate = rate;
+    const PpoLosses a = cpu.update_ppo(parallel, batch, update), b = torch->update_ppo(parallel, batch, update);
+    EXPECT_GT(a.clip_fraction, 0);
+    EXPECT_LT(a.clip_fraction, 1);
+    // Ratios are off by as much as scores are, which is relative to those; later the networks have gone their own ways.
+    const double near = rate == 0.0002 ? scores_limit() * size_of_scores : 0.05;
+    using Loss = double PpoLosses::*;
+    for (const Loss loss : std::vector<Loss>{&PpoLosses::policy, &PpoLosses::entropy, &PpoLosses::largest_ratio,
+                                             &PpoLosses::smallest_ratio, &PpoLosses::value, &PpoLosses::total})
+      EXPECT_NEAR(b.*loss, a.*loss, near * (0.1 + std::abs(a.*loss)));
+    EXPECT_NEAR(b.kl, a.kl, 2 * near * (0.1 + std::abs(a.kl)));
+    if (rate != 0.0002) continue;
+    EXPECT_NEAR(b.clip_fraction, a.clip_fraction, coarse() ? 0.05 : 1e-6);
+    EXPECT_EQ(got.parameters, start.parameters) << "not given back yet";
+    torch->give_back();
+    const auto expect_moved = [&](std::vector<float> Arrays::*array) {
+      std::vector<double> way, gone;
+      for (size_t i = 0; i < (want.*array).size(); ++i) {
+        way.push_back(double((want.*array)[i]) - (start.*array)[i]);
+        gone.push_back(double((got.*array)[i]) - (start.*array)[i]);
+      }
+      EXPECT_LT(relative_error(gone, way), gradient_limit());
+    };
+    for (std::vector<float> Arrays::*array :
+         {&Arrays::parameters, &Arrays::squares, &Arrays::value, &Arrays::value_squares})
+      expect_moved(array);
+  }
+  torch->give_back();
+  EXPECT_EQ(got.statistics, start.statistics);
 }
 
 TEST_P(TorchEngine, ScoresAStateTheSameInEveryCompany) {

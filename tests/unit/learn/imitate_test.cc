@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
+#include "engine/cpu_engine.h"
 #include "helpers/episodes.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
@@ -149,6 +151,82 @@ TEST_P(ImitationModes, StrippedAndWholeCheckpointsHaveTheSameWeights) {
   EXPECT_EQ(thrown([&] { Imitation(builtin_world(), *session.parallel, stripped); }),
             "65 the checkpoint has no training state (was it stripped?)");
   EXPECT_TRUE(fails_for(kNoTrainingState, [&] { Imitation(builtin_world(), *session.parallel, stripped); }));
+}
+
+// Computes an update as late as it may: when its results are asked for.
+class LateEngine : public CpuEngine {
+ public:
+  using CpuEngine::CpuEngine;
+  void begin_update(Parallel& parallel, const StepBatch<float>& batch, const StepOptions& options,
+                    const AdamUpdate& adam, float* logits) override {
+    const size_t n = size_t(batch.size);
+    observations_.assign(batch.observations, batch.observations + n * observation_size);
+    env_.assign(batch.env, batch.env + n);
+    task_.assign(batch.task, batch.task + n);
+    label_.assign(batch.label, batch.label + n);
+    taken_.assign(batch.taken, batch.taken + n);
+    reward_.assign(batch.reward, batch.reward + n);
+    StepBatch<float> kept = batch;
+    kept.observations = observations_.data();
+    kept.env = env_.data();
+    kept.task = task_.data();
+    kept.label = label_.data();
+    kept.taken = taken_.data();
+    kept.reward = reward_.data();
+    EXPECT_FALSE(late_) << "an update begins before the last one has ended";
+    late_ = [this, &parallel, kept, options, adam, logits] {
+      CpuEngine::begin_update(parallel, kept, options, adam, logits);
+    };
+  }
+  Losses end_update() override {
+    std::exchange(late_, nullptr)();
+    return CpuEngine::end_update();
+  }
+  void give_back() override { EXPECT_FALSE(late_) << "an update is lost"; }
+  bool computes() const { return bool(late_); }
+
+  size_t observation_size = 0;
+
+ private:
+  std::vector<uint8_t> observations_;
+  std::vector<int> env_, task_, label_, taken_;
+  std::vector<float> reward_;
+  std::function<void()> late_;
+};
+
+TEST_P(ImitationModes, AnUpdateThatEndsAfterTheNextDrawShowsNowhere) {
+  for (const double roll_in : {0.0, 0.5}) {
+    ImitationOptions options = this->options();
+    if (options.batch_states > 0) options.roll_in = roll_in;
+    const std::string lines = expert_lines(kSeen, 12);
+    std::string results[2];
+    RunLogRow rows[2];
+    bool overlapped = false;
+    for (const bool late : {false, true}) {
+      Session session(lines);
+      session.start(options, 2);
+      LateEngine* engine = nullptr;
+      if (late)
+        session.run->compute_with([&](Policy<float>& policy) {
+          auto made = std::make_unique<LateEngine>(policy);
+          engine = made.get();
+          engine->observation_size = policy.observation_size();
+          return made;
+        });
+      session.update(2);
+      if (late) overlapped = engine->computes();
+      session.run->evaluate_sample(2);
+      session.update(1);
+      session.saved();
+      session.update(2);
+      rows[late] = session.run->take_report();
+      results[late] = session.saved();
+    }
+    EXPECT_TRUE(results[0] == results[1]) << "bytes differ";
+    EXPECT_EQ(rows[0].loss, rows[1].loss);
+    EXPECT_EQ(rows[0].right[0], rows[1].right[0]);
+    EXPECT_EQ(overlapped, options.roll_in == 0) << "the learner's own moves alone have to be waited for";
+  }
 }
 
 std::string mode_name(const testing::TestParamInfo<ImitationOptions (*)()>& info) {

@@ -33,7 +33,7 @@ struct Counting : LongWork {
     report.log.write({double(made)});
     return "";
   }
-  Checkpoint checkpoint(bool with_training_state) const override {
+  Checkpoint checkpoint(bool with_training_state) override {
     said += with_training_state ? "save " : "strip ";
     Checkpoint c;
     c.seed = uint64_t(made);

@@ -117,7 +117,7 @@ TEST(Ppo, TheFirstMinibatchAfterARolloutHasRatioOneAndNoDivergence) {
     Ppo run(world, parallel, small_model(world, method), small_ppo(), 4);
     for (int i = 0; i < 4; ++i) {
       run.update();
-      const Ppo::Minibatch& first = run.first_minibatch();
+      const PpoLosses& first = run.first_minibatch();
       EXPECT_NEAR(first.largest_ratio, 1, 1e-6);  // log-probabilities are kept as float
       EXPECT_NEAR(first.smallest_ratio, 1, 1e-6);
       EXPECT_NEAR(first.kl, 0, 1e-12);

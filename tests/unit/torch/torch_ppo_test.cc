@@ -7,7 +7,7 @@
 
 #include "format/safetensors.h"
 #include "helpers/numbers.h"
-#include "learn/ppo/clipped_objective.h"
+#include "nn/clipped_objective.h"
 #include "learn/ppo/gae.h"
 #include "nn/rmsprop.h"
 

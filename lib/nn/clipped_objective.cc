@@ -1,4 +1,4 @@
-#include "learn/ppo/clipped_objective.h"
+#include "nn/clipped_objective.h"
 
 #include <algorithm>
 #include <cmath>
