@@ -7,6 +7,8 @@
 //                                        the training step of the kitchens' network, that of Table 3, on random
 //                                        features
 //   synpo-bench shards B THREADS         how a training step is cut for so many threads, whatever this machine has
+//   synpo-bench scaling THREADS          what so many threads gain over one: the bare product, and the step and the
+//                                        scores beside it; TSV rows name, one thread, all, gain, part of product's gain
 //   synpo-bench ppo THREADS [DEVICE [PRECISION]]
 //                                        steps of the worlds per second of PPO, with all that is learned from them
 //
@@ -279,7 +281,7 @@ double eigen_rate(int threads) {
 }
 
 // The same of our own product, the right matrix packed as a weight is.
-double product_rate(int threads) {
+double product_rate(int threads, double limit_s = 3) {
   constexpr int kRows = 512, kSide = 256;
   Parallel parallel(threads);
   const std::vector<float> values(kRows * kSide, 0.5f);
@@ -287,7 +289,7 @@ double product_rate(int threads) {
   std::vector<std::vector<float>> c(threads, std::vector<float>(kRows * kSide));
   for (Packed<float>& packed : b) packed.pack(Op::kAsIs, kSide, kSide, values.data(), kSide);
   constexpr int kRepeats = 64;
-  return rate(threads * kRepeats, 3,
+  return rate(threads * kRepeats, limit_s,
               [&] {
                 parallel.run(threads, [&](int shard, int) {
                   for (int i = 0; i < kRepeats; ++i)
@@ -419,6 +421,35 @@ void method_rows(int threads) {
     }
 }
 
+// A row of rates on one thread and on all, measured in turns: a machine's speed drifts. Returns the gain.
+template <class Rate>
+double scaling_row(const char* name, int threads, double product_gain, Rate&& rate_on) {
+  constexpr int kRounds = 3;
+  double one[kRounds], all[kRounds];
+  for (int i = 0; i < kRounds; ++i) {
+    one[i] = rate_on(1);
+    all[i] = rate_on(threads);
+  }
+  std::sort(one, one + kRounds);
+  std::sort(all, all + kRounds);
+  const double gain = all[kRounds / 2] / one[kRounds / 2];
+  std::printf("%s\t%.6g\t%.6g\t%.2f\t%.2f\n", name, one[kRounds / 2], all[kRounds / 2], gain,
+              product_gain > 0 ? gain / product_gain : 1);
+  std::fflush(stdout);
+  return gain;
+}
+
+int scaling(int threads) {
+  std::printf("name\tone\tall\tgain\tof_product\n");
+  const double gain = scaling_row("product_gflops", threads, 0, [](int t) { return 2e-9 * product_rate(t, 1); });
+  for (const int batch : {512, 1600})
+    scaling_row(("train_states_per_s_b" + std::to_string(batch)).c_str(), threads, gain,
+                [&](int t) { return network_rate(true, batch, t, {.limit_s = 2}); });
+  scaling_row("forward_states_per_s_b1600", threads, gain,
+              [](int t) { return network_rate(false, 1600, t, {.limit_s = 2}); });
+  return 0;
+}
+
 int rows() {
   const int threads = Parallel().threads();
   row("world_steps_per_s", world_rate("gridworld"), "steps/s");
@@ -465,6 +496,7 @@ int main(int argc, char** argv) {
     }
     return 0;
   }
+  if (argc == 3 && what == "scaling") return scaling(std::atoi(argv[2]));
   if (argc == 4 && what == "shards") return shard_rows(std::atoi(argv[2]), std::atoi(argv[3]));
   if (argc >= 3 && argc <= 5 && what == "ppo") {
     std::printf("%.0f\n", ppo_rate(std::atoi(argv[2]), device_at(3)));
@@ -477,7 +509,7 @@ int main(int argc, char** argv) {
   }
   std::fputs(
       "usage: synpo-bench rows | methods | train|forward|kitchen BATCH[,BATCH...] THREADS [DEVICE [PRECISION]] |\n"
-      "       shards BATCH THREADS | ppo THREADS [DEVICE [PRECISION]]\n",
+      "       shards BATCH THREADS | scaling THREADS | ppo THREADS [DEVICE [PRECISION]]\n",
       stderr);
   return 64;
 }
