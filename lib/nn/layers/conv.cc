@@ -73,39 +73,41 @@ void Conv<T>::prepare(int p, const T* weight, bool training) {
   if (training) backward_[p].pack(Op::kTransposed, out_, depth_, weight, out_);
 }
 
-// Calls body(at) for every tap of every output pixel of one sample, in the order of the gathered rows; `at` is the
-// place of the tap's pixel in x, or -1 outside the picture.
+// Calls body(run) for every row of taps of every output pixel of one sample, in the order of the gathered rows. Pixels
+// next to each other lie next to each other in x: those inside the picture are taken at once.
 template <class T>
 template <class Body>
-void Conv<T>::for_taps(Body&& body) const {
+void Conv<T>::for_tap_rows(Body&& body) const {
   const int padding = kernel_ / 2;
-  for (int pixel = 0; pixel < side_out_ * side_out_; ++pixel)
-    for (int tap = 0; tap < kernel_ * kernel_; ++tap) {
-      const int r = pixel / side_out_ * stride_ + tap / kernel_ - padding,
-                q = pixel % side_out_ * stride_ + tap % kernel_ - padding;
-      const bool inside = unsigned(r) < unsigned(side_) && unsigned(q) < unsigned(side_);
-      body(inside ? (r * side_ + q) * in_ : -1);
-    }
+  for (int row = -padding; row < side_out_ * stride_ - padding; row += stride_)
+    for (int column = -padding; column < side_out_ * stride_ - padding; column += stride_)
+      for (int r = row; r < row + kernel_; ++r) {
+        const bool inside = unsigned(r) < unsigned(side_);
+        const int begin = std::max(column, 0), end = inside ? std::min(column + kernel_, side_) : begin;
+        body(TapRow{size_t(begin - column) * in_, size_t(end - begin) * in_,
+                    (size_t(inside ? r : 0) * side_ + begin) * in_});
+      }
 }
 
 template <class T>
 void Conv<T>::gather_pixels(int samples, const T* x, T* inputs) const {
+  const size_t row = size_t(kernel_) * in_;
   for (int n = 0; n < samples; ++n, x += x_size())
-    for_taps([&](int at) {
-      if (at >= 0)
-        std::memcpy(inputs, x + at, in_ * sizeof(T));
-      else
-        std::memset(inputs, 0, in_ * sizeof(T));
-      inputs += in_;
+    for_tap_rows([&](const TapRow& run) {
+      if (run.inside < row) std::memset(inputs, 0, row * sizeof(T));
+      std::memcpy(inputs + run.before, x + run.at, run.inside * sizeof(T));
+      inputs += row;
     });
 }
 
 template <class T>
 void Conv<T>::gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const {
   for (int n = 0; n < samples; ++n, dx += x_size())
-    for_taps([&](int at) {
-      for (int c = 0; at >= 0 && c < in_; ++c) dx[at + c] += dinputs[c];
-      dinputs += in_;
+    for_tap_rows([&](const TapRow& run) {
+      const T* from = dinputs + run.before;
+      T* to = dx + run.at;
+      for (size_t i = 0; i < run.inside; ++i) to[i] += from[i];
+      dinputs += size_t(kernel_) * in_;
     });
 }
 
@@ -132,14 +134,13 @@ void Conv<T>::forward(int samples, const T* x, T* y, Buffer<T>& scratch) const {
   for (; samples > unit(); samples -= unit(), x += unit() * x_size(), y += unit() * y_size())
     forward(unit(), x, y, scratch);
   const int rows = samples * rows_;
-  const size_t inputs_size = size_t(products_) * rows * depth_;
-  T* inputs = scratch.grow(inputs_size + (transformed() ? size_t(products_) * rows * out_ : 0));
+  const size_t stride = plane_rows(samples), inputs_size = products_ * stride * depth_;
+  T* inputs = scratch.grow(inputs_size + (transformed() ? products_ * stride * out_ : 0));
   T* outputs = transformed() ? inputs + inputs_size : y;
-  make_inputs(samples, x, inputs, size_t(rows));
+  make_inputs(samples, x, inputs, stride);
   for (int p = 0; p < products_; ++p)
-    gemm(Op::kAsIs, rows, inputs + size_t(p) * rows * depth_, depth_, forward_[p], outputs + size_t(p) * rows * out_,
-         out_);
-  if (transformed()) transform().outputs(tiles(out_, samples, rows), outputs, y);
+    gemm(Op::kAsIs, rows, inputs + p * stride * depth_, depth_, forward_[p], outputs + p * stride * out_, out_);
+  if (transformed()) transform().outputs(tiles(out_, samples, stride), outputs, y);
 }
 
 template <class T>
@@ -150,13 +151,14 @@ void Conv<T>::reserve(Slab& slab, int samples) const {
     slab.rows = size_t(samples) * rows_;
     slab.inputs.grow(products_ * slab.rows * depth_);
     slab.outputs.grow(products_ * slab.rows * out_);
+    if (packs_first()) slab.packed.resize(std::max(slab.packed.size(), size_t(products_)));
   }
 }
 
 template <class T>
 auto Conv<T>::operands(Slab& slab, Range part, const T* x, const T* dy, T* own) const -> Operands {
   const int samples = part.size();
-  const size_t first = size_t(part.begin) * rows_, rows = keeps_gradients() ? size_t(samples) * rows_ : slab.rows;
+  const size_t first = size_t(part.begin) * rows_, rows = keeps_gradients() ? plane_rows(samples) : slab.rows;
   T* inputs = keeps_gradients() ? own : slab.inputs.data() + first * depth_;
   T* outputs = keeps_gradients() ? own + products_ * rows * depth_ : slab.outputs.data() + first * out_;
   if (transformed()) {
@@ -174,7 +176,8 @@ auto Conv<T>::operands(Slab& slab, Range part, const T* x, const T* dy, T* own) 
 template <class T>
 void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const {
   const int samples = part.size(), rows = samples * rows_;
-  const size_t inputs_size = size_t(products_) * rows * depth_, outputs_size = size_t(products_) * rows * out_;
+  const size_t plane = plane_rows(samples), inputs_size = products_ * plane * depth_,
+               outputs_size = products_ * plane * out_;
   T* dinputs = scratch.grow(inputs_size + (keeps_gradients() ? inputs_size + outputs_size : 0));
   const auto [inputs, outputs, stride] = operands(slab, part, x, dy, dinputs + inputs_size);
   if (keeps_gradients()) {
@@ -186,8 +189,8 @@ void Conv<T>::backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, b
   if (!dx) return;
   if (form_ == Form::kPlain) return gemm(Op::kAsIs, rows, outputs, out_, backward_[0], dx, depth_, add_dx);
   for (int p = 0; p < products_; ++p)
-    gemm(Op::kAsIs, rows, outputs + p * stride * out_, out_, backward_[p], dinputs + size_t(p) * rows * depth_, depth_);
-  make_dx(samples, dinputs, size_t(rows), dx, add_dx);
+    gemm(Op::kAsIs, rows, outputs + p * stride * out_, out_, backward_[p], dinputs + p * plane * depth_, depth_);
+  make_dx(samples, dinputs, plane, dx, add_dx);
 }
 
 // The sum of what the parts of a slab have of a gradient, from value `at` on.
@@ -206,9 +209,11 @@ void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool acc
   const size_t at = (size_t(p) * depth_ + range.begin) * out_;
   if (keeps_gradients())
     return add_part_gradients(slab, samples, at, size_t(range.size()) * out_, accumulate, dfactors + at);
-  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_,
-       slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_, slab.outputs.data() + p * slab.rows * out_,
-       out_, dfactors + at, out_, accumulate);
+  const T* inputs = slab.inputs.data() + p * slab.rows * depth_ + range.begin;
+  if (packs_first())
+    return gemm(Op::kTransposed, range.size(), inputs, depth_, slab.packed[size_t(p)], dfactors + at, out_, accumulate);
+  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, inputs, depth_,
+       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + at, out_, accumulate);
 }
 
 template <class T>

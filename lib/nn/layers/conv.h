@@ -55,7 +55,8 @@ class Conv {
   void reserve(Slab& slab, int samples) const;
   void backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const;
   // Then, when all parts of the slab are done, the gradient of the transformed weight, in shards: dfactors
-  // [dfactors_size()] = or +=.
+  // [dfactors_size()] = or +=. Where several shards multiply with the same outputs, stage_pack() comes first.
+  bool packs_first() const { return !keeps_gradients() && depth_ > gradient_rows_; }
   int gradient_shards() const { return products_ * shard_count(depth_, gradient_rows_); }
   void weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
   size_t dfactors_size() const { return size_t(products_) * depth_ * out_; }
@@ -98,8 +99,12 @@ class Conv {
   void make_inputs(int samples, const T* x, T* inputs, size_t rows) const;
   void add_part_gradients(const Slab& slab, int samples, size_t at, size_t count, bool accumulate, T* to) const;
   void make_dx(int samples, const T* dinputs, size_t rows, T* dx, bool add_dx) const;
+  // Values of a row of taps that lie outside the picture before those inside, and the place of these in x.
+  struct TapRow {
+    size_t before, inside, at;
+  };
   template <class Body>
-  void for_taps(Body&& body) const;
+  void for_tap_rows(Body&& body) const;
   void gather_pixels(int samples, const T* x, T* inputs) const;
   void gather_pixels_adjoint(int samples, const T* dinputs, T* dx) const;
   const Transform<T>& transform() const;
@@ -113,6 +118,9 @@ class Conv {
   // Whether a part's gradient of the transformed weight is so much smaller than inputs and outputs that it is kept in
   // their place.
   bool keeps_gradients() const { return 2 * dfactors_size() <= size_t(unit()) * rows_ * products_ * (depth_ + out_); }
+  // Rows from one product to the next in a part of its own: one more than there are, since planes that lie a power of
+  // two apart share few places of the first-level cache, which all of them go through tile by tile.
+  size_t plane_rows(int samples) const { return size_t(samples) * rows_ + (transformed() ? 1 : 0); }
   TileShape tiles(int channels, int samples, size_t rows) const { return {side_, channels, samples, rows}; }
 
   int side_, in_, out_, kernel_, stride_, side_out_;

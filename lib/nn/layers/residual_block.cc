@@ -213,10 +213,9 @@ template <class T>
 void ResidualBlock<T>::weight_gradients(Parallel& parallel, ResidualWorkspace<T>& work,
                                         std::initializer_list<Place> convs, Range samples, T* gradient) {
   const bool in_stages = staged(parallel, samples.size());
-  if (in_stages)
-    run_shards(
-        parallel, convs, [](const Conv<T>& conv) { return conv.pack_shards(); },
-        [&](Place i, int p) { convs_[i].stage_pack(p, work.slabs[i], samples.size()); });
+  run_shards(
+      parallel, convs, [&](const Conv<T>& conv) { return in_stages || conv.packs_first() ? conv.pack_shards() : 0; },
+      [&](Place i, int p) { convs_[i].stage_pack(p, work.slabs[i], samples.size()); });
   run_shards(
       parallel, convs,
       [&](const Conv<T>& conv) { return in_stages ? conv.fine_gradient_shards() : conv.gradient_shards(); },
