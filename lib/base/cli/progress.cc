@@ -17,7 +17,11 @@ constexpr int kUsualColumns = 80;
 
 std::string bar_of(int percent, int length) {
   const int full = percent * length / 100;
-  return "[" + std::string(size_t(full), '=') + std::string(size_t(length - full), ' ') + "] ";
+  std::string bar(size_t(length) + 3, ' ');
+  bar.front() = '[';
+  std::fill_n(bar.begin() + 1, full, '=');
+  bar[size_t(length) + 1] = ']';
+  return bar;
 }
 
 std::vector<std::string> fields_of(const std::string& note) {
