@@ -308,7 +308,10 @@ help:
 	    dist 'a tarball of the sources' \
 	    deps-deb 'install what deb needs' \
 	    deb 'Debian packages, in $(B)/deb' \
+	    completions 'of bash, zsh and fish, in $(B)/completions' \
 	    fuzz 'feed every reader what it does not expect (tests/fuzz)' \
+	    'asan, tsan' 'the tests under sanitizers, in build-asan and build-tsan' \
+	    accidents 'many kills, and a stream of 5 GB (tests/cli/accidents)' \
 	    clean 'remove $(B)/'
 	@echo; echo 'V=1 shows the commands; CXXFLAGS, DESTDIR, PREFIX and B=DIR (for $(B)/) are kept.'
 

@@ -61,9 +61,11 @@ struct RunLogTable {
   std::vector<std::vector<double>> others;  // the same of the columns that need not be there; empty for one that is not
 };
 
-// Needs the column update, those of the axis, and `columns`, but not `others`. Throws kData, with the place, for
-// anything that is no such log. Of one that is `growing`, a row that is still being written is passed over.
+// Needs the column update, those of the axis, and `columns`, but not `others`; where there is a column `instead`, not
+// `columns` either. Throws kData, with the place, for anything that is no such log. Of one that is `growing`, a row
+// that is still being written is passed over.
 RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns,
-                         const std::vector<std::string>& others = {}, bool growing = false);
+                         const std::vector<std::string>& others = {}, bool growing = false,
+                         const std::string& instead = "");
 
 }  // namespace synpo

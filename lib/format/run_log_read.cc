@@ -54,14 +54,15 @@ class Clock {
 }  // namespace
 
 RunLogTable read_run_log(Input& input, RunLogAxis axis, const std::vector<std::string>& columns,
-                         const std::vector<std::string>& others, bool growing) {
+                         const std::vector<std::string>& others, bool growing, const std::string& instead) {
   TsvReader reader(input, growing);
   const int update_column = reader.need("update");
   const int states_column = axis == RunLogAxis::kUpdates ? -1 : reader.need("states");
   std::optional<Clock> clock;
   if (axis == RunLogAxis::kMinutes) clock.emplace(reader);
   std::vector<int> places;
-  for (const std::string& column : columns) places.push_back(reader.need(column));
+  const bool may_lack = !instead.empty() && reader.find(instead) >= 0;
+  for (const std::string& column : columns) places.push_back(may_lack ? reader.find(column) : reader.need(column));
   for (const std::string& column : others) places.push_back(reader.find(column));
 
   RunLogTable table;

@@ -76,6 +76,8 @@ Measure find_measure(const std::string& name, const std::string& pairs) {
 }
 
 CurveData read_curve_data(const CurveRequest& request) {
+  // What lets the columns of the measure be missing: that the training plays, or that this is about to be looked at.
+  const std::string instead = request.measure.of_training ? "update" : request.measure.own.empty() ? "" : kEpisodes;
   std::vector<std::vector<Log>> methods;
   for (const LabelledFiles& method : request.logs) {
     methods.emplace_back();
@@ -83,7 +85,7 @@ CurveData read_curve_data(const CurveRequest& request) {
       Input input(path);
       methods.back().push_back(
           {input.name(), read_run_log(input, request.axis, request.measure.columns,
-                                      {request.measure.own, kPolicyLoss, kEpisodes}, request.growing)});
+                                      {request.measure.own, kPolicyLoss, kEpisodes}, request.growing, instead)});
     }
   }
   for (const std::vector<Log>& logs : methods)
