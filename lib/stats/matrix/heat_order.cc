@@ -174,7 +174,8 @@ std::vector<HeatMargin> margins_of(const HeatTable& table) {
   std::vector<HeatMargin> margins;
   const int groups = int(table.groups.size());
   for (int group = -1; group < (groups > 1 ? groups : 0); ++group) {
-    HeatMargin margin{group < 0 ? (groups > 1 ? "mean all" : "mean") : "mean " + table.groups[group].name, group, {}, {}};
+    HeatMargin margin{
+        group < 0 ? (groups > 1 ? "mean all" : "mean") : "mean " + table.groups[group].name, group, {}, {}};
     margin.tasks.resize(table.tasks.size());
     margin.envs.resize(table.envs.size());
     for (size_t task = 0; task < table.tasks.size(); ++task)

@@ -6,9 +6,10 @@ setup() { set_up a.ckpt; }
 
 # From the build under test, as it is.
 make_there() {
-    local build
+    local build tool built=()
     build=$(dirname "$(command -v synpo-train)")
-    make -C "$ROOT" B="$build" -o all $(printf -- "-o $build/%s " $TOOLS) PREFIX=/opt/synpo DESTDIR="$PWD/to" "$@"
+    for tool in $TOOLS; do built+=(-o "$build/$tool"); done
+    make -C "$ROOT" B="$build" -o all "${built[@]}" PREFIX=/opt/synpo DESTDIR="$PWD/to" "$@"
 }
 
 @test "a program of ten lines is built with pkg-config against what was installed, and counts as synpo-eval does" {

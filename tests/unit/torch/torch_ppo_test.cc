@@ -7,8 +7,8 @@
 
 #include "format/safetensors.h"
 #include "helpers/numbers.h"
-#include "nn/clipped_objective.h"
 #include "learn/ppo/gae.h"
+#include "nn/clipped_objective.h"
 #include "nn/rmsprop.h"
 
 namespace synpo {
