@@ -93,8 +93,12 @@ matrix_fails() {
         matrix_fails 65 $file
         says "$file: line 1"
     done
-    matrix_fails 65 pairs.tsv
-    says "episodes"
+    # Pairs have no episodes; a picture of them is of the split.
+    for command in summary merge; do
+        fails 65 synpo-matrix $command -o out pairs.tsv
+        says "episodes"
+    done
+    synpo-render heatmap -o split.png pairs.tsv
     fails 65 synpo-render map --font picture.png
 }
 

@@ -18,8 +18,9 @@ limited() { (ulimit -v "$1" && exec "${@:2}"); }
     pid=$!
     exec 9>stream
     head -n 21 e.jsonl >&9
-    for ((i = 0; i < 400; ++i)); do
-        [ -e saved ] && break
+    # Until it waits for the stream, and writes nothing.
+    for ((i = 0, quiet = 0; i < 400 && quiet < 10; ++i)); do
+        if [ -e saved ] && [ -z "$(find . -name 'saved.*.part')" ]; then ((++quiet)); else quiet=0; fi
         sleep 0.05
     done
     ln -s saved link
