@@ -77,8 +77,9 @@ setup() { set_up k.jsonl grid.jsonl; }
 @test "an episode of the other world: 65, with the line" {
     fails 65 synpo-render episode -w kitchen -o out grid.jsonl
     says "line 1: world 'gridworld', expected 'kitchen'"
-    fails 65 synpo-render episode -o out k.jsonl
-    says "k.jsonl: line 1:"
+    fails 65 synpo-render episode -w gridworld -o out k.jsonl
+    says "k.jsonl: line 1: world 'kitchen', expected 'gridworld'"
+    synpo-render episode -o own.png k.jsonl  # in the world that it names
     jq -c '.rewards[0] = 1' k.jsonl >bad.jsonl
     fails 65 synpo-render episode -w kitchen -o out bad.jsonl
     says "bad.jsonl: line 1: replay gives reward -0.01 at step 1, file says 1"

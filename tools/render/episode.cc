@@ -145,9 +145,10 @@ int episode(int argc, char** argv) {
   Input input(operands.empty() ? "-" : operands[0]);
   std::unique_ptr<const Font> font;
   if (!picture.ansi) font = std::make_unique<const Font>(picture.font);
+  std::unique_ptr<const WorldFace> face;
+  if (options.given("world") || options.given("checkpoint")) face = world.open(options);
   const Trajectory trajectory = read_trajectory(input, line);
-  const std::unique_ptr<const WorldFace> face =
-      options.given("world") || options.given("checkpoint") ? world.open(options) : world_named(input, trajectory);
+  if (!face) face = world_named(input, trajectory);
   if (picture.ansi && !face->kind().has_text)
     fail(Exit::kUsage, "--ansi is for ", environments_with(&FaceKind::has_text), ", but the world is ",
          quoted(face->world().name()));
