@@ -31,6 +31,29 @@ make_inputs() {
     synpo-eval -q -p two.tsv -n 1 <a.ckpt >m.tsv
 }
 
+# The commands of every tool that take options of their own, one a line.
+commands() {
+    local tool
+    for tool in $TOOLS; do
+        case $tool in
+            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help |
+                awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
+            *) echo "$tool" ;;
+        esac
+    done
+}
+
+# help_options [FILE]: options in a --help text, one a line: -n and --count alike.
+help_options() {
+    awk '/^ +-/ {
+        line = $0
+        sub(/^ +/, "", line)
+        sub(/   *.*/, "", line)
+        n = split(line, word, /[ ,]+/)
+        for (i = 1; i <= n; ++i) if (word[i] ~ /^-/) print word[i]
+    }' "$@" | sort -u
+}
+
 complain() {
     printf '%s\n' "$*" >&2
     return 1

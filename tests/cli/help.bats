@@ -10,17 +10,6 @@ COMMANDS=(synpo-gen-expert synpo-train synpo-finetune "synpo-finetune adapt" "sy
     "synpo-render view"
     "synpo-render episode" "synpo-render embedding" "synpo-render policy" "synpo-render features")
 
-# Options in a --help text, one a line: -n and --count alike.
-help_options() {
-    awk '/^ +-/ {
-        line = $0
-        sub(/^ +/, "", line)
-        sub(/   *.*/, "", line)
-        n = split(line, word, /[ ,]+/)
-        for (i = 1; i <= n; ++i) if (word[i] ~ /^-/) print word[i]
-    }' "$1" | sort -u
-}
-
 # Options in a man page: of the list items ("It") or of the synopsis ("synopsis", or that of one command).
 man_options() {
     awk -v what="$2" -v command="${3-}" '

@@ -2,18 +2,6 @@ load common
 
 setup_file() { make_inputs; }
 
-# The commands of every tool that take options of their own, one a line.
-commands() {
-    local tool
-    for tool in $TOOLS; do
-        case $tool in
-            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help |
-                awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
-            *) echo "$tool" ;;
-        esac
-    done
-}
-
 # Lines "SHORT LONG ARGUMENT" of a --help text: - where there is no letter, or no argument. An option that is on or off
 # stands there with its first name.
 options_of() {

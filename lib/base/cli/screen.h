@@ -9,7 +9,7 @@ struct ScreenSize {
   int columns = 0, rows = 0;  // 0: not known
 };
 
-// The size of the terminal behind a descriptor, as it is at this moment; where the terminal does not tell it, that of
+// The size of the terminal of a descriptor, as it is at this moment; where the terminal does not tell it, that of
 // the variables COLUMNS and LINES. Of what is no terminal nothing is known.
 ScreenSize screen_size(int fd);
 

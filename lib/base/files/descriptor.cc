@@ -46,7 +46,7 @@ void open_standard_descriptors() {
 bool is_readable(int fd) { return was_opened_for(fd, O_RDONLY); }
 bool is_writable(int fd) { return was_opened_for(fd, O_WRONLY); }
 
-std::string file_behind(int fd) {
+std::string file_of_descriptor(int fd) {
   struct stat opened, named;
   if (fstat(fd, &opened) != 0 || !S_ISREG(opened.st_mode)) return "";
   std::error_code error;

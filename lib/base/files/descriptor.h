@@ -33,9 +33,9 @@ void open_standard_descriptors();
 bool is_readable(int fd);
 bool is_writable(int fd);
 
-// The path of the regular file behind a descriptor, from the working directory where it lies below that; "" where there
+// The path of the regular file of a descriptor, from the working directory where it lies below that; "" where there
 // is no such file, or none of that name any more.
-std::string file_behind(int fd);
+std::string file_of_descriptor(int fd);
 
 // Opens a file, a device or a pipe to read it; without a writer a pipe is opened too. Empty, with errno, where it
 // cannot be opened.

@@ -12,18 +12,6 @@ setup() {
     for tool in $TOOLS; do source "$BATS_FILE_TMPDIR/$tool.bash"; done
 }
 
-# The commands of every tool that take options of their own, one a line.
-commands() {
-    local tool
-    for tool in $TOOLS; do
-        case $tool in
-            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help |
-                awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
-            *) echo "$tool" ;;
-        esac
-    done
-}
-
 # completed WORD...: what bash offers for the last word of a command line, one a line, sorted. Where it leaves the word
 # to file names, as bash does outside of readline, it is "files".
 completed() {
@@ -32,17 +20,6 @@ completed() {
     COMPREPLY=()
     "_${1//-/_}" "$1"
     [ ${#COMPREPLY[@]} -eq 0 ] || printf '%s\n' "${COMPREPLY[@]}" | sort
-}
-
-# Options in a --help text, one a line: -n and --count alike.
-help_options() {
-    awk '/^ +-/ {
-        line = $0
-        sub(/^ +/, "", line)
-        sub(/   *.*/, "", line)
-        n = split(line, word, /[ ,]+/)
-        for (i = 1; i <= n; ++i) if (word[i] ~ /^-/) print word[i]
-    }' | sort -u
 }
 
 @test "bash, zsh and fish complete every option that --help has, and no other" {
