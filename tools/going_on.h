@@ -27,7 +27,8 @@ inline void tell_how_to_go_on(const char* tool, const LongRun& settings, const O
   std::string command = options.given_again(not_again) + " --resume " + shell_quoted(settings.save);
   for (const std::string& file : stream.files) command += " " + shell_quoted(file);
   const bool from_stdin = stream.reads && stream.files.empty();
-  const std::string in = from_stdin ? file_of_descriptor(0) : "", out = settings.output == "-" ? file_of_descriptor(1) : "";
+  const std::string in = from_stdin ? file_of_descriptor(0) : "",
+                    out = settings.output == "-" ? file_of_descriptor(1) : "";
   if (!in.empty()) command += " < " + shell_quoted(in);
   if (!out.empty()) command += " > " + shell_quoted(out);
   std::fprintf(stderr, "%s: this goes on%s: %s\n", tool,
