@@ -176,7 +176,8 @@ bool parse(const std::string& text, const Hyper& hyper, double& value) {
 
 std::string expectation(const Hyper& hyper) {
   if (!hyper.choices.empty()) return "expected " + alternatives(hyper.choices);
-  return concat("expected ", hyper.whole ? "a whole number" : "a number", " from ", hyper.low, " to ", hyper.high);
+  return concat("expected ", hyper.whole ? "a whole number" : "a number", " from ", shortest(hyper.low), " to ",
+                shortest(hyper.high));
 }
 
 }  // namespace

@@ -162,7 +162,7 @@ Options& Options::real(char letter, const char* name, const char* arg, const std
   return call(letter, name, arg, help,
               [&value, low, high](const std::string& text) {
                 if (!parse_whole(text, value) || !(value >= low && value <= high))
-                  throw std::invalid_argument(concat("expected a number from ", low, " to ", high));
+                  throw std::invalid_argument(concat("expected a number from ", shortest(low), " to ", shortest(high)));
               })
       .shown_as(shortest(value));
 }
