@@ -6,9 +6,12 @@ setup_file() {
     cd "$BATS_FILE_TMPDIR" || exit
     "${CC:-cc}" -shared -fPIC -O1 -Wall -Wextra -o faults.so "$ROOT/tests/cli/accidents/faults.c" || exit
     make_inputs
+    # An episode that is cut after three steps: few frames.
+    head -n 1 e.jsonl |
+        jq -c '(.actions, .rewards) |= .[:3] | .success = false | .terminated = false' >short.jsonl
 }
 
-setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv faults.so; }
+setup() { set_up pairs.tsv two.tsv e.jsonl short.jsonl a.ckpt m.tsv faults.so; }
 
 # with FAULT COMMAND...: the command with that fault; its messages go to ../err.
 with() {
@@ -38,7 +41,9 @@ expert() { synpo-gen-expert -q -p pairs.tsv -n 400 -o out; }
 split() { synpo-matrix split -o out; }
 merge() { synpo-matrix merge -o out m.tsv; }
 map() { synpo-render map -o out; }
-frames() { synpo-render episode --frames out e.jsonl; }
+frames() { synpo-render episode --frames out "$EPISODE"; }
+EPISODE=${ACCIDENTS:+e.jsonl}
+: "${EPISODE:=short.jsonl}"
 COMMANDS=(train resume ppo adapt evaluate expert split merge map frames)
 
 # In an empty folder but for the inputs.

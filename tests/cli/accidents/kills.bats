@@ -53,27 +53,6 @@ nothing_but() {
     done
 }
 
-@test "train: the checkpoint is whole after every kill, and the end is that of a run never killed" {
-    local long again=0
-    long=$(lasts synpo-train "${TINY[@]}" -n 40 -s 2 --save other --every 1 <e.jsonl)
-    for ((i = 0; i < KILLS; ++i)); do
-        if [ -e saved ]; then killed "$(moment train "$long" "$i")" exec_resume_train
-        else killed "$(moment train "$long" "$i")" exec_begin_train; fi
-        nothing_but saved out
-        [ ! -e saved ] || described saved .updates >/dev/null
-        # Some runs come to their end: the next one begins anew.
-        if [ -e out ]; then
-            cmp out train.want
-            rm out saved
-            again=$((again + 1))
-        fi
-    done
-    if [ -e saved ]; then (exec_resume_train); else (exec_begin_train); fi
-    cmp out train.want
-    [ -z "$(find . -name '*.part*')" ] || complain "left $(find . -name '*.part*')"
-    echo "# train: $KILLS kills, $again ends between" >&3
-}
-
 # In place of the shell, so that the kill is the program's.
 exec_begin_train() { exec synpo-train "${TINY[@]}" -n 40 -s 2 --save saved --every 1 -o out <e.jsonl; }
 exec_resume_train() { exec synpo-train -q --resume saved --save saved --every 1 -o out <e.jsonl; }
@@ -81,24 +60,42 @@ exec_begin_ppo() { exec synpo-finetune ppo "${PPO[@]}" --save saved --every 1 -o
 exec_resume_ppo() { exec synpo-finetune ppo "${PPO[@]}" --resume saved --save saved --every 1 -o out; }
 exec_adapt() { exec synpo-finetune adapt -q -n 300 -c a.ckpt -o out <few.jsonl; }
 exec_eval() { exec synpo-eval -q -p two.tsv -n 60 -c a.ckpt -o out --record record; }
+exec_in_shell() { ("$@"); }
 
-@test "ppo: the checkpoint is whole after every kill, and the end is that of a run never killed" {
+# Which of the two goes on from what is there.
+begin_or_resume() { if [ -e saved ]; then echo "exec_resume_$1"; else echo "exec_begin_$1"; fi; }
+
+nothing_left() { [ -z "$(find . -name '*.part*')" ] || complain "left $(find . -name '*.part*')"; }
+
+# kill_and_resume train|ppo: until it has been killed KILLS times.
+kill_and_resume() {
     local long again=0
-    long=$(lasts synpo-finetune ppo "${PPO[@]}" --save other --every 1 <a.ckpt)
+    long=$(lasts exec_in_shell "exec_begin_$1")
+    cmp out "$1.want"
+    rm out saved
     for ((i = 0; i < KILLS; ++i)); do
-        if [ -e saved ]; then killed "$(moment ppo "$long" "$i")" exec_resume_ppo
-        else killed "$(moment ppo "$long" "$i")" exec_begin_ppo; fi
+        killed "$(moment "$1" "$long" "$i")" "$(begin_or_resume "$1")"
         nothing_but saved out
         [ ! -e saved ] || described saved .updates >/dev/null
+        # Some runs come to their end: the next one begins anew.
         if [ -e out ]; then
-            cmp out ppo.want
+            cmp out "$1.want"
             rm out saved
             again=$((again + 1))
         fi
     done
-    if [ -e saved ]; then (exec_resume_ppo); else (exec_begin_ppo); fi
-    cmp out ppo.want
-    echo "# ppo: $KILLS kills, $again ends between" >&3
+    ("$(begin_or_resume "$1")")
+    cmp out "$1.want"
+    nothing_left
+    echo "# $1: $KILLS kills, $again ends between" >&3
+}
+
+@test "train: the checkpoint is whole after every kill, and the end is that of a run never killed" {
+    kill_and_resume train
+}
+
+@test "ppo: the checkpoint is whole after every kill, and the end is that of a run never killed" {
+    kill_and_resume ppo
 }
 
 @test "adapt and eval: the output is there as a whole or not at all" {
@@ -115,9 +112,7 @@ exec_eval() { exec synpo-eval -q -p two.tsv -n 60 -c a.ckpt -o out --record reco
         done
         (exec_$command)
         cmp out $command.want
-        [ -z "$(find . -name '*.part*')" ] || complain "left $(find . -name '*.part*')"
+        nothing_left
     done
     echo "# adapt, eval: $KILLS kills each" >&3
 }
-
-exec_in_shell() { ("$@"); }
