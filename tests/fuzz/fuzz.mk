@@ -14,7 +14,8 @@ fuzz: all
 	tests/fuzz/run build-fuzz $(B) $(FUZZ_TIME)
 
 fuzz-targets: $(FUZZ_TARGETS:%=$(B)/fuzz/%)
-$(B)/fuzz/%: $(B)/tests/fuzz/%.o $(B)/tests/fuzz/fuzz.o $(B)/lib/draw/plot/curves_style.o $(B)/libsynpo.a
+$(B)/fuzz/%: $(B)/tests/fuzz/%.o $(B)/tests/fuzz/fuzz.o $(B)/lib/draw/plot/curves_style.o $(B)/tools/render/files.o \
+    $(B)/libsynpo.a
 	@mkdir -p $(@D)
 	$(call say,LINK,$@)
 	$(Q)$(CXX) -pthread -fsanitize=fuzzer $(FUZZ_SANITIZE) -o $@ $^ $(LDFLAGS)

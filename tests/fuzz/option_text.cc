@@ -1,17 +1,23 @@
 // Command lines: a word a line, read by a table with every kind of option, and each word as the texts that options
 // hold. --help and --version, which end the process, are left out.
+#include <algorithm>
 #include <cmath>
-#include <set>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "base/cli/options.h"
+#include "base/text.h"
+#include "draw/colour.h"
 #include "draw/plot/curves.h"
 #include "engine/device.h"
 #include "fuzz.h"
 #include "learn/long_run.h"
 #include "learn/ppo/ppo_options.h"
 #include "learn/recipe.h"
+#include "render/render.h"
+#include "stats/matrix/heat_table.h"
+#include "stats/matrix/runs.h"
 #include "stats/matrix/split.h"
 
 using namespace synpo;
@@ -42,6 +48,55 @@ void tries(Parse parse) {
     parse();
   } catch (const std::invalid_argument&) {
   }
+}
+
+// A split of twelve pairs as the words plan it: shares, pairs, names and counts in any order.
+void split(const std::vector<std::string>& words) {
+  SplitPlan plan;
+  plan.envs = {"a", "b", "c", "d"};
+  plan.tasks = {"x", "y", "z"};
+  int64_t* const counts[] = {&plan.seen, &plan.cover, &plan.p_envs, &plan.p_tasks};
+  size_t next = 0;
+  for (const std::string& word : words) {
+    double share = 0;
+    if (word.starts_with("0.") && parse_whole(word, share) && share > 0 && share <= 1) plan.ratio = share;
+    if (word.size() == 1 && word[0] >= 'a')
+      plan.singles.emplace_back(word[0] < 'x' ? word : "", word[0] < 'x' ? "" : word);
+    tries([&] { plan.singles.push_back(split_pair_name(word)); });
+    tries([&] {
+      const int64_t count = parse_count(word);
+      if (count < 0)
+        plan.setting = int(1 - std::max<int64_t>(count, -2));
+      else
+        *counts[next++ % std::size(counts)] = count;
+    });
+  }
+  fuzz::accepts(
+      [&] {
+        const std::vector<SplitPair> pairs = split_pairs(plan);
+        fuzz::require(pairs.size() == 12, "a split has all pairs");
+        const auto seen = std::count_if(pairs.begin(), pairs.end(), [](const SplitPair& pair) { return pair.seen; });
+        fuzz::require(plan.setting > 1 || plan.seen < 0 || seen == plan.seen, "so many pairs are seen");
+      },
+      {Exit::kUsage});
+}
+
+// What the options of synpo-matrix and synpo-render hold beside numbers and choices, and synpo-render's operands.
+void try_texts(const std::vector<std::string>& words) {
+  for (const std::string& word : words) {
+    tries([&] { find_measure(word); });
+    tries([&] { find_order(word); });
+    tries([&] { find_scheme(word); });
+    tries([&] { drawable(word); });
+    is_subset(word);
+    fuzz::accepts(
+        [&] {
+          for (const std::string& name : choose_names("--envs", word, {"a", "b", "c"}))
+            fuzz::require(name.size() == 1, "a chosen name is one of them");
+        },
+        {Exit::kUsage});
+  }
+  fuzz::accepts([&] { labelled_files({words.begin() + 1, words.end()}); }, {Exit::kUsage});
 }
 
 }  // namespace
@@ -91,5 +146,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       parse_curves_size(word, style);
     });
   }
+  split(words);
+  try_texts(words);
   return 0;
 }
