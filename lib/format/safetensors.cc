@@ -15,6 +15,9 @@ namespace {
 
 using Json = nlohmann::json;
 
+static_assert(std::endian::native == std::endian::little && sizeof(size_t) == 8,
+              "tensors are read and written as they lie in memory, files of more than 4 GiB too");
+
 constexpr uint64_t kHeaderLimit = 100'000'000;  // as other readers of the format have it
 constexpr JsonLimits kHeaderLimits = {4, 1 << 20};
 constexpr uint64_t kFileLimit = uint64_t{16} << 30;
