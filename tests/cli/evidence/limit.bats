@@ -8,7 +8,7 @@ setup() {
     cp -r "$ROOT/scripts" tree/
     ln -s "$(dirname "$(command -v synpo-train)")" tree/build
     # Small enough that the folder's files are cut up: a save has some 45 MB.
-    asked=(small --toy --budget 12800 --seeds 1 -n 3)
+    asked=(small --toy --budget 5120 --seeds 1 -n 3)
 }
 
 reproduce() { TMPDIR=$PWD tree/scripts/reproduce "$@"; }
@@ -34,9 +34,9 @@ results() (
     [ "$(reproduce "${asked[@]}" --list -o whole/small)" = '0 runs, 0 million states to learn from' ]
     results whole >expected
 
-    [ "$(reproduce "${asked[@]}" --list -o part/small | tail -n 1)" = '2 runs, 0.0256 million states to learn from' ]
+    [ "$(reproduce "${asked[@]}" --list -o part/small | tail -n 1)" = '2 runs, 0.0102 million states to learn from' ]
     # Killed by a signal that nothing can catch, with all of its children, and what it left carried elsewhere.
-    for moment in 2 5; do
+    for moment in 1.5 3; do
         reproduce "${asked[@]}" --limit 20m -o part 2>err 3>&- &
         sleep $moment
         kill_tree $!
@@ -49,7 +49,7 @@ results() (
     done
     # Out of time, told so, and gone on with; each time with a second more, for slow machines.
     for i in $(seq 60); do
-        reproduce "${asked[@]}" --limit $((3 + i))s -o part >out 2>err || complain "$(tail err)"
+        reproduce "${asked[@]}" --limit $((1 + i))s -o part >out 2>err || complain "$(tail err)"
         [ -z "$(find part -size +16000000c)" ] || complain "files over 16 MB: $(ls -lR part)"
         ! grep -q '^outstanding: 0 runs' out || break
         mv part other
@@ -62,12 +62,12 @@ results() (
 }
 
 @test "reproduce --limit: pieces that are not whole are not gone on with" {
-    reproduce "${asked[@]}" --limit 3s -o part 2>err || true
+    reproduce "${asked[@]}" --limit 1s -o part 2>err || true
     mkdir -p part/small
     printf 'no such sum\n' >part/small/x.ckpt.cut
     printf 'half' >'part/small/x.ckpt.cut-no such sum-000'
     status=0
-    reproduce "${asked[@]}" --limit 3s -o part 2>err || status=$?
+    reproduce "${asked[@]}" --limit 1s -o part 2>err || status=$?
     [ "$status" = 65 ]
     grep -q "part/./small/x.ckpt.cut: its pieces are not whole" err
 }
