@@ -26,9 +26,10 @@ LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' \
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
 # The machine that the compiler is for; this one while no compiler is installed (make deps all).
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
-TARGETS  := plain $(if $(filter x86_64,$(MACHINE)),avx2 avx512 amx)
+TARGETS  := plain $(if $(filter x86_64,$(MACHINE)),avx2 avx512 bf16 amx)
 TARGET_avx2   := -mavx2 -mfma
 TARGET_avx512 := $(TARGET_avx2) -mavx512f -mavx512bw -mavx512dq -mavx512vl
+TARGET_bf16   := $(TARGET_avx512) -mavx512bf16
 TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GCC 12 warns of its own header
 KERNEL_OBJ := $(TARGETS:%=$(B)/lib/kernel/target_%.o)
 LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o $(B)/version.o

@@ -5,6 +5,7 @@
 
 #include "engine/cpu_engine.h"
 #include "engine/torch_engine.h"
+#include "kernel/kernels.h"
 
 namespace synpo {
 namespace {
@@ -28,13 +29,22 @@ bool graphs_wanted() {
   return !value || std::string(value) != "0";
 }
 
+// For the whole program: the kernels are one table.
+void choose_coarse_products() {
+  for (const NamedKernels<float>& target : all_kernels<float>())
+    if (target.name == "bf16") return choose_kernels(target.name);
+  fail(Exit::kUnavailable,
+       "found precision bf16 on the device cpu, whose processor has no products of it (AVX-512 "
+       "BF16), expected float32");
+}
+
 }  // namespace
 
 void DeviceOptions::add_to(Options& options) {
   options.call(0, "device", "DEVICE", "computes on cpu, or with LibTorch on torch-cpu, cuda or cuda:N [cpu]",
                [this](const std::string& name) { device = parse_device(name); });
-  options.choice(0, "precision", "NAME", "of LibTorch's products: float32, tf32 or bf16", precision,
-                 {"float32", "tf32", "bf16"});
+  options.choice(0, "precision", "NAME", "of the products' factors: float32, bf16, or tf32 on a GPU", precision,
+                 {"float32", "bf16", "tf32"});
 }
 
 std::unique_ptr<Engine> make_engine(const DeviceOptions& options, const Parallel& parallel, const std::string& method,
@@ -42,8 +52,10 @@ std::unique_ptr<Engine> make_engine(const DeviceOptions& options, const Parallel
   if (!options.is_cpu())
     return make_torch_engine({torch_name(options.device), options.precision, parallel.threads(), graphs_wanted()},
                              method, shape, policy);
-  if (options.precision != "float32")
-    fail(Exit::kUsage, "found precision ", options.precision, " on the device cpu, expected float32");
+  if (options.precision == "bf16")
+    choose_coarse_products();
+  else if (options.precision != "float32")
+    fail(Exit::kUsage, "found precision ", options.precision, " on the device cpu, expected float32 or bf16");
   return std::make_unique<CpuEngine>(policy);
 }
 

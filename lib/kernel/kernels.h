@@ -4,9 +4,10 @@
 // (target.cc), and works on plain arrays: no memory is taken here and no threads are started. T is float or double;
 // pictures are NHWC.
 //
-// Targets: `plain` runs everywhere; on x86-64 there are also avx2 (with FMA), avx512 and amx. The last takes float
-// products in pairs of bf16 (product_amx.h): about 16 bits of every factor count instead of 24. All others compute in T
-// throughout, avx2 and avx512 to the same bits.
+// Targets: `plain` runs everywhere; on x86-64 there are also avx2 (with FMA), avx512, bf16 and amx. The last takes
+// float products in pairs of bf16 (product_amx.h): about 16 bits of every factor count instead of 24. bf16 rounds every
+// factor to bf16, 8 bits (product_bf16.h), and is used where it is asked for only. All others compute in T throughout,
+// avx2 and avx512 to the same bits.
 #pragma once
 #include <cstddef>
 #include <string>

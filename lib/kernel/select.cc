@@ -18,6 +18,7 @@ SYNPO_DECLARE(plain)
 #if defined(__x86_64__)
 SYNPO_DECLARE(avx2)
 SYNPO_DECLARE(avx512)
+SYNPO_DECLARE(bf16)
 SYNPO_DECLARE(amx)
 #endif
 #undef SYNPO_DECLARE
@@ -32,6 +33,8 @@ bool has_avx512() {
   return has_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
          __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
 }
+
+bool has_bf16() { return has_avx512() && __builtin_cpu_supports("avx512bf16"); }
 
 // The processor must have the tiles, and the system must let this process use them: their registers are large to save.
 bool has_amx() {
@@ -52,6 +55,7 @@ struct Target {
   bool runs;
   const Kernels<float>* floats;
   const Kernels<double>* doubles;
+  bool coarse = false;  // so that it must be asked for
 };
 
 // From plain to best.
@@ -61,6 +65,7 @@ const std::vector<Target>& targets() {
 #if defined(__x86_64__)
     {"avx2", has_avx2(), &avx2::kFloatKernels, &avx2::kDoubleKernels},
     {"avx512", has_avx512(), &avx512::kFloatKernels, &avx512::kDoubleKernels},
+    {"bf16", has_bf16(), &bf16::kFloatKernels, &bf16::kDoubleKernels, true},
     {"amx", has_amx(), &amx::kFloatKernels, &amx::kDoubleKernels},
 #endif
   };
@@ -74,7 +79,7 @@ const Target* find(const std::string& name, const char* who) {
   for (const Target& target : targets()) {
     if (!target.runs) continue;
     names += names.empty() ? target.name : std::string(", ") + target.name;
-    if (name.empty() || name == target.name) found = &target;
+    if (name.empty() ? !target.coarse : name == target.name) found = &target;
   }
   if (!found) fail(Exit::kUsage, who, " is ", quoted(name), ", expected one of ", names);
   return found;

@@ -11,6 +11,9 @@
 #ifdef __AMX_BF16__
 #include "kernel/product_amx.h"
 #endif
+#ifdef __AVX512BF16__
+#include "kernel/product_bf16.h"
+#endif
 
 namespace synpo::SYNPO_TARGET {
 namespace {
@@ -29,6 +32,14 @@ constexpr Kernels<T> table() {
     k.pack = AmxProduct::pack;
     k.multiply = AmxProduct::multiply;
     k.product_error = 0x1p-14;
+  }
+#endif
+#ifdef __AVX512BF16__
+  if constexpr (sizeof(T) == sizeof(float)) {
+    k.packed_size = Bf16Product::packed_size;
+    k.pack = Bf16Product::pack;
+    k.multiply = Bf16Product::multiply;
+    k.product_error = 0x1p-7 + 0x1p-16;  // both factors are rounded
   }
 #endif
   k.winograd43 = Tiles<T, Winograd43>::table();

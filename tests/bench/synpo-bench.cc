@@ -455,11 +455,13 @@ int rows() {
   row("world_steps_per_s", world_rate("gridworld"), "steps/s");
   row("kitchen_steps_per_s", world_rate("kitchen"), "steps/s");
   row("trajectories_per_s", trajectory_rate(), "trajectories/s");
+  const std::string chosen = kernel_target();
   for (const NamedKernels<float>& target : all_kernels<float>()) {
     choose_kernels(target.name);
     row(("train_" + target.name + "_states_per_s_b512").c_str(), network_rate(true, 512, threads), "states/s");
     row(("product_" + target.name + "_gflops").c_str(), 2e-9 * product_rate(threads), "GFLOP/s");
   }
+  choose_kernels(chosen);
   row("eigen_gflops", 2e-9 * eigen_rate(threads), "GFLOP/s");
   for (const int batch : {256, 512, 1024, 4096})
     row(("train_states_per_s_b" + std::to_string(batch)).c_str(), network_rate(true, batch, threads), "states/s");

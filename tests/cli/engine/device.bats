@@ -9,10 +9,34 @@ load ../common
     says "option --device: found 'gpu', expected cpu, torch-cpu, cuda or cuda:N"
     fails 64 synpo-train --device cuda:x </dev/null
     fails 64 synpo-finetune adapt --precision double -c x
-    says "--precision: found 'double', expected float32, tf32 or bf16"
+    says "--precision: found 'double', expected float32, bf16 or tf32"
     synpo-gen-expert -q -n 1 >expert.jsonl
-    fails 64 synpo-train --precision bf16 -n 1 <expert.jsonl
-    says "found precision bf16 on the device cpu, expected float32"
+    fails 64 synpo-train --precision tf32 -n 1 <expert.jsonl
+    says "found precision tf32 on the device cpu, expected float32 or bf16"
+}
+
+@test "products of bf16 on the CPU are asked for by --precision, and a policy acts as well with them" {
+    synpo-gen-expert -q -n 4 >expert.jsonl
+    if ! grep -qw avx512_bf16 /proc/cpuinfo; then
+        fails 69 synpo-train --precision bf16 -n 1 -o out.ckpt <expert.jsonl
+        says "found precision bf16 on the device cpu, whose processor has no products of it (AVX-512 BF16), expected float32"
+        [ ! -e out.ckpt ]
+        return
+    fi
+    small_training --precision bf16 -n 3 -j 1 --save save.ckpt --every 2 -o bf16.ckpt <expert.jsonl
+    small_training --precision bf16 -n 3 -j 3 -o threads.ckpt <expert.jsonl
+    SYNPO_KERNELS=bf16 small_training -n 3 -o kernels.ckpt <expert.jsonl
+    cmp bf16.ckpt threads.ckpt
+    cmp bf16.ckpt kernels.ckpt
+    small_training -n 3 -o float.ckpt <expert.jsonl
+    ! cmp -s bf16.ckpt float.ckpt
+    # Of the 400 episodes of a trained policy, rounding changes few ends.
+    for precision in float32 bf16; do
+        synpo-eval -q -n 1 --precision $precision "$BATS_TEST_DIRNAME/../../../examples/play/synpo.ckpt" >$precision.tsv
+    done
+    ! cmp -s float32.tsv bf16.tsv
+    paste <(cut -f 13 float32.tsv) <(cut -f 13 bf16.tsv) | awk 'NR > 1 { a += $1; b += $2 }
+        END { print a, b; exit !(a > 360 && b > a - 12 && b < a + 12) }'
 }
 
 @test "without the plug-in a device is not available, and the message says how to get it" {
