@@ -121,8 +121,8 @@ END
 # kernel TARGET TEXT: an object of that name, with this in the namespace that it should stay in.
 kernel() { echo "namespace synpo::$1 { $2 } ${3-}" | g++ -std=c++17 -x c++ -c -o "build/lib/kernel/target_$1.o" -; }
 
-# check UNIT CASES: scripts/check over a unit test program and a test file made of these texts (TEST stands for bats'
-# own word, which this file cannot hold); its last line in $last.
+# check UNIT CASES [NAME=STATUS]...: scripts/check over a unit test program and a test file made of these texts (TEST
+# stands for bats' own word, which this file cannot hold); its last line in $last.
 check() {
     mkdir -p build/lib/kernel cli
     [ -e build/lib/kernel/target_plain.o ] || kernel plain 'int mine() { return 1; }'
@@ -132,7 +132,7 @@ check() {
     status=0
     # bats inside bats: what the outer one exports would mislead the inner one.
     env -i PATH=/usr/local/bin:/usr/bin:/bin TMPDIR="$BATS_TEST_TMPDIR" CHECK_CLI="$PWD/cli" \
-        "$ROOT/scripts/check" "$PWD/build" >out 2>&1 3>&- 4>&- || status=$?
+        "$ROOT/scripts/check" "$PWD/build" "${@:3}" >out 2>&1 3>&- 4>&- || status=$?
     last=$(tail -n 1 out)
 }
 
@@ -162,6 +162,9 @@ TEST "b" { true; }'
     check "$(gtest FAILED)" 'TEST "a" { echo the reason; false; }'
     [ "$status $last" = "1 2 passed, 2 failed" ] || complain "$(cat out)"
     grep -q "the reason" out
+    check "$(gtest COMPLETED)" 'TEST "a" { true; }' lint=0 fuzz=7
+    [ "$status $last" = "1 5 passed, 1 failed" ] || complain "$(cat out)"
+    grep -q "check: fuzz ended with status 7" out
 }
 
 @test "check: a runner that dies, or runs nothing, is a failure" {

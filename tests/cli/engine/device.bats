@@ -29,12 +29,12 @@ load ../common
     cmp bf16.ckpt threads.ckpt
     cmp bf16.ckpt kernels.ckpt
     small_training -n 3 -o float.ckpt <expert.jsonl
-    ! cmp -s bf16.ckpt float.ckpt
+    run ! cmp -s bf16.ckpt float.ckpt
     # Of the 400 episodes of a trained policy, rounding changes few ends.
     for precision in float32 bf16; do
         synpo-eval -q -n 1 --precision $precision "$BATS_TEST_DIRNAME/../../../examples/play/synpo.ckpt" >$precision.tsv
     done
-    ! cmp -s float32.tsv bf16.tsv
+    run ! cmp -s float32.tsv bf16.tsv
     paste <(cut -f 13 float32.tsv) <(cut -f 13 bf16.tsv) | awk 'NR > 1 { a += $1; b += $2 }
         END { print a, b; exit !(a > 360 && b > a - 12 && b < a + 12) }'
 }
