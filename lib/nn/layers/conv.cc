@@ -151,7 +151,7 @@ void Conv<T>::reserve(Slab& slab, int samples) const {
     slab.rows = size_t(samples) * rows_;
     slab.inputs.grow(products_ * slab.rows * depth_);
     slab.outputs.grow(products_ * slab.rows * out_);
-    if (packs_first()) slab.packed.resize(std::max(slab.packed.size(), size_t(products_)));
+    if (pack_shards(false) > 0) slab.packed.resize(std::max(slab.packed.size(), size_t(products_)));
   }
 }
 
@@ -203,34 +203,23 @@ void Conv<T>::add_part_gradients(const Slab& slab, int samples, size_t at, size_
 }
 
 template <class T>
-void Conv<T>::weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const {
-  const int blocks = shard_count(depth_, gradient_rows_), p = shard / blocks;
-  const Range range = shard_range(depth_, gradient_rows_, shard % blocks);
-  const size_t at = (size_t(p) * depth_ + range.begin) * out_;
-  if (keeps_gradients())
-    return add_part_gradients(slab, samples, at, size_t(range.size()) * out_, accumulate, dfactors + at);
-  const T* inputs = slab.inputs.data() + p * slab.rows * depth_ + range.begin;
-  if (packs_first())
-    return gemm(Op::kTransposed, range.size(), inputs, depth_, slab.packed[size_t(p)], dfactors + at, out_, accumulate);
-  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, inputs, depth_,
-       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + at, out_, accumulate);
-}
-
-template <class T>
-void Conv<T>::stage_pack(int p, Slab& slab, int samples) const {
+void Conv<T>::pack_outputs(int p, Slab& slab, int samples) const {
   slab.packed[size_t(p)].pack(Op::kAsIs, samples * rows_, out_, slab.outputs.data() + p * slab.rows * out_, out_);
 }
 
 template <class T>
-void Conv<T>::stage_weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const {
-  const int blocks = shard_count(depth_, kFineRows), p = shard / blocks;
-  const Range range = shard_range(depth_, kFineRows, shard % blocks);
+void Conv<T>::weight_gradient(int shard, bool staged, const Slab& slab, int samples, bool accumulate,
+                              T* dfactors) const {
+  const int blocks = shard_count(depth_, shard_rows(staged)), p = shard / blocks;
+  const Range range = shard_range(depth_, shard_rows(staged), shard % blocks);
   const size_t at = (size_t(p) * depth_ + range.begin) * out_;
   if (keeps_gradients())
-    add_part_gradients(slab, samples, at, size_t(range.size()) * out_, accumulate, dfactors + at);
-  else
-    gemm(Op::kTransposed, range.size(), slab.inputs.data() + p * slab.rows * depth_ + range.begin, depth_,
-         slab.packed[size_t(p)], dfactors + at, out_, accumulate);
+    return add_part_gradients(slab, samples, at, size_t(range.size()) * out_, accumulate, dfactors + at);
+  const T* inputs = slab.inputs.data() + p * slab.rows * depth_ + range.begin;
+  if (pack_shards(staged) > 0)
+    return gemm(Op::kTransposed, range.size(), inputs, depth_, slab.packed[size_t(p)], dfactors + at, out_, accumulate);
+  gemm(Op::kTransposed, Op::kAsIs, range.size(), out_, samples * rows_, inputs, depth_,
+       slab.outputs.data() + p * slab.rows * out_, out_, dfactors + at, out_, accumulate);
 }
 
 template <class T>

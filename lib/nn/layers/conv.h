@@ -54,11 +54,15 @@ class Conv {
   };
   void reserve(Slab& slab, int samples) const;
   void backward(Slab& slab, Range part, const T* x, const T* dy, T* dx, bool add_dx, Buffer<T>& scratch) const;
-  // Then, when all parts of the slab are done, the gradient of the transformed weight, in shards: dfactors
-  // [dfactors_size()] = or +=. Where several shards multiply with the same outputs, stage_pack() comes first.
-  bool packs_first() const { return !keeps_gradients() && depth_ > gradient_rows_; }
-  int gradient_shards() const { return products_ * shard_count(depth_, gradient_rows_); }
-  void weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
+  // Then, when all parts of the slab are done, the gradient of the transformed weight: dfactors [dfactors_size()] = or
+  // +=, in shards, of fewer rows where `staged`. Before them what several shards multiply with is packed once, in
+  // shards of its own, which may be none.
+  int pack_shards(bool staged) const {
+    return !keeps_gradients() && (staged || depth_ > gradient_rows_) ? products_ : 0;
+  }
+  void pack_outputs(int p, Slab& slab, int samples) const;
+  int gradient_shards(bool staged) const { return products_ * shard_count(depth_, shard_rows(staged)); }
+  void weight_gradient(int shard, bool staged, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
   size_t dfactors_size() const { return size_t(products_) * depth_ * out_; }
   // At last, where the form is a transformed one, tap by tap: dweight = the weight's gradient. Otherwise dfactors is
   // that.
@@ -78,12 +82,6 @@ class Conv {
   // Backward: operands; then gradients of parts (as many shards as there are, which may be none) and, where dx is
   // wanted, products of the gradient; at last dx. weight_gradient() comes after the gradients of parts.
   void stage_operands(Slab& slab, Range part, const T* x, const T* dy) const;
-  // weight_gradient() in two stages: what is packed once, and shards of fewer rows; none of it where parts have
-  // gradients, whose sum weight_gradient() makes.
-  int pack_shards() const { return keeps_gradients() ? 0 : products_; }
-  void stage_pack(int p, Slab& slab, int samples) const;
-  int fine_gradient_shards() const { return products_ * shard_count(depth_, kFineRows); }
-  void stage_weight_gradient(int shard, const Slab& slab, int samples, bool accumulate, T* dfactors) const;
   int part_gradient_shards(int samples) const {
     return keeps_gradients() ? products_ * shard_count(samples, unit()) : 0;
   }
@@ -118,6 +116,8 @@ class Conv {
   // Whether a part's gradient of the transformed weight is so much smaller than inputs and outputs that it is kept in
   // their place.
   bool keeps_gradients() const { return 2 * dfactors_size() <= size_t(unit()) * rows_ * products_ * (depth_ + out_); }
+  // Rows of the transformed weight's gradient in a shard.
+  int shard_rows(bool staged) const { return staged ? kFineRows : gradient_rows_; }
   // Rows from one product to the next in a part of its own: one more than there are, since planes that lie a power of
   // two apart share few places of the first-level cache, which all of them go through tile by tile.
   size_t plane_rows(int samples) const { return size_t(samples) * rows_ + (transformed() ? 1 : 0); }

@@ -214,18 +214,14 @@ void ResidualBlock<T>::weight_gradients(Parallel& parallel, ResidualWorkspace<T>
                                         std::initializer_list<Place> convs, Range samples, T* gradient) {
   const bool in_stages = staged(parallel, samples.size());
   run_shards(
-      parallel, convs, [&](const Conv<T>& conv) { return in_stages || conv.packs_first() ? conv.pack_shards() : 0; },
-      [&](Place i, int p) { convs_[i].stage_pack(p, work.slabs[i], samples.size()); });
+      parallel, convs, [&](const Conv<T>& conv) { return conv.pack_shards(in_stages); },
+      [&](Place i, int p) { convs_[i].pack_outputs(p, work.slabs[i], samples.size()); });
   run_shards(
-      parallel, convs,
-      [&](const Conv<T>& conv) { return in_stages ? conv.fine_gradient_shards() : conv.gradient_shards(); },
+      parallel, convs, [&](const Conv<T>& conv) { return conv.gradient_shards(in_stages); },
       [&](Place i, int shard) {
         const Conv<T>& conv = convs_[i];
         T* to = conv.transformed() ? dfactors_[i].data() : gradient + weights_[i];
-        if (in_stages)
-          conv.stage_weight_gradient(shard, work.slabs[i], samples.size(), samples.begin > 0, to);
-        else
-          conv.weight_gradient(shard, work.slabs[i], samples.size(), samples.begin > 0, to);
+        conv.weight_gradient(shard, in_stages, work.slabs[i], samples.size(), samples.begin > 0, to);
       });
 }
 

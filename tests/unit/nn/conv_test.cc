@@ -112,9 +112,9 @@ void backward(Parallel& parallel, const Conv<T>& conv, int samples, const std::v
       conv.backward(slab, part, x.data() + at * conv.x_size(), dy.data() + at * conv.y_size(),
                     dx ? dx + at * conv.x_size() : nullptr, add_dx, scratch[thread]);
     });
-    if (conv.packs_first()) parallel.run(conv.pack_shards(), [&](int p, int) { conv.stage_pack(p, slab, size); });
-    parallel.run(conv.gradient_shards(),
-                 [&](int shard, int) { conv.weight_gradient(shard, slab, size, begin > 0, dfactors.data()); });
+    parallel.run(conv.pack_shards(false), [&](int p, int) { conv.pack_outputs(p, slab, size); });
+    parallel.run(conv.gradient_shards(false),
+                 [&](int shard, int) { conv.weight_gradient(shard, false, slab, size, begin > 0, dfactors.data()); });
   }
   if (conv.transformed())
     for (int tap = 0; tap < conv.kTaps; ++tap) conv.finish_gradient(tap, dfactors.data(), dw.data());
