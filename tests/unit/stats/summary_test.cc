@@ -124,7 +124,7 @@ TEST(Summary, PartsThatNoRowNamesAreNotListed) {
 TEST(Summary, NewPairsAreNotUnseenOnes) {
   Matrix m = matrix({row("r1", "e", true, 0, 10, 8), row("r1", "f", false, 0, 10, 6), row("r1", "g", false, 0, 10, 1)});
   m.rows[2].is_new = true;
-  const auto& subsets = summarise(m).at(0).subsets;
+  const auto subsets = summarise(m).at(0).subsets;
   ASSERT_EQ(subsets.size(), 4u);
   EXPECT_EQ(subsets[1].name, "unseen");
   EXPECT_EQ(subsets[1].successes, 6);
