@@ -313,6 +313,7 @@ help:
 	    fuzz 'feed every reader what it does not expect (tests/fuzz)' \
 	    'asan, tsan' 'the tests under sanitizers, in build-asan and build-tsan' \
 	    accidents 'many kills, and a stream of 5 GB (tests/cli/accidents)' \
+	    long-run 'two hours of training under a limit of memory (tests/long-run)' \
 	    clean 'remove $(B)/'
 	@echo; echo 'V=1 shows the commands; CXXFLAGS, DESTDIR, PREFIX and B=DIR (for $(B)/) are kept.'
 

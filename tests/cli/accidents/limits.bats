@@ -74,6 +74,19 @@ limited_train() { limited "$1" synpo-train "${SMALL[@]}" -j 1024 <e.jsonl 2> >(s
     synpo-eval -q -p two.tsv -n 8 -j 64 -c a.ckpt | cmp - one
 }
 
+@test "evaluations of one checkpoint, again and again, with 1 to 64 threads: one answer" {
+    local want times=${EVALUATIONS:-10}
+    # Small, and sure to end soon.
+    synpo-train "${SMALL[@]}" --feature 8 --basis 4 --hidden 8 --strip <e.jsonl >small.ckpt
+    head -n 2 two.tsv >one.tsv
+    want=$(synpo-eval -q -p one.tsv -n 1 -j 1 -c small.ckpt)
+    [ "$(wc -l <<<"$want")" -eq 2 ]
+    for ((i = 0; i < times; ++i)); do
+        [ "$(synpo-eval -q -p one.tsv -n 1 -j $((1 << i % 7)) -c small.ckpt)" = "$want" ] || complain "evaluation $i"
+    done
+    echo "# $times evaluations: one answer" >&3
+}
+
 @test "a line without an end takes no more memory than a line may have" {
     local status=0
     { head -n 1 e.jsonl | tr -d '\n}'; head -c 200000000 /dev/zero | tr '\0' ' '; } |
