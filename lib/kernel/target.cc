@@ -18,29 +18,24 @@
 namespace synpo::SYNPO_TARGET {
 namespace {
 
+template <class P, class T>
+constexpr void multiply_with(double error, Kernels<T>& k) {
+  k.packed_size = P::packed_size;
+  k.pack = P::pack;
+  k.multiply = P::multiply;
+  k.product_error = error;
+}
+
 template <class T>
 constexpr Kernels<T> table() {
   using R = Rows<T>;
   Kernels<T> k = {};
-  k.packed_size = Product<T>::packed_size;
-  k.pack = Product<T>::pack;
-  k.multiply = Product<T>::multiply;
-  k.product_error = sizeof(T) == sizeof(float) ? 0x1p-24 : 0x1p-53;
+  multiply_with<Product<T>>(sizeof(T) == sizeof(float) ? 0x1p-24 : 0x1p-53, k);
 #ifdef __AMX_BF16__
-  if constexpr (sizeof(T) == sizeof(float)) {
-    k.packed_size = AmxProduct::packed_size;
-    k.pack = AmxProduct::pack;
-    k.multiply = AmxProduct::multiply;
-    k.product_error = 0x1p-14;
-  }
+  if constexpr (sizeof(T) == sizeof(float)) multiply_with<AmxProduct>(0x1p-14, k);
 #endif
 #ifdef __AVX512BF16__
-  if constexpr (sizeof(T) == sizeof(float)) {
-    k.packed_size = Bf16Product::packed_size;
-    k.pack = Bf16Product::pack;
-    k.multiply = Bf16Product::multiply;
-    k.product_error = 0x1p-7 + 0x1p-16;  // both factors are rounded
-  }
+  if constexpr (sizeof(T) == sizeof(float)) multiply_with<Bf16Product>(0x1p-7 + 0x1p-16, k);  // both are rounded
 #endif
   k.winograd43 = Tiles<T, Winograd43>::table();
   k.toeplitz2 = Tiles<T, Toeplitz2>::table();
