@@ -78,9 +78,9 @@ TORCH_OBJ   := $(TORCH_SRC:%.cc=$(B)/%.o)
 TORCH_CFLAGS = -std=$(TORCH_STD) -Wall -Wextra -O1 -fPIC -fvisibility=hidden -MMD -MP -Ilib \
                $(if $(TORCH),-isystem $(TORCH)/include) -isystem $(TORCH_DIR)/include/torch/csrc/api/include \
                $(if $(TORCH_CUDA),-DSYNPO_TORCH_CUDA -isystem $(CUDA_HOME)/include) \
-               $(if $(shell grep -c __cxx11 $(TORCH_LIB)/libc10.so 2>/dev/null | grep -v '^0'),,-D_GLIBCXX_USE_CXX11_ABI=0)
-TORCH_LIBS   = -L$(TORCH_LIB) $(if $(TORCH),-Wl$(,)-rpath$(,)$(TORCH_LIB)) -Wl,--no-as-needed -ltorch -ltorch_cpu -lc10 \
-               $(if $(TORCH_CUDA),-ltorch_cuda -lc10_cuda)
+               $(if $(shell grep -l __cxx11 $(TORCH_LIB)/libc10.so 2>/dev/null),,-D_GLIBCXX_USE_CXX11_ABI=0)
+TORCH_LIBS   = -L$(TORCH_LIB) $(if $(TORCH),-Wl$(,)-rpath$(,)$(TORCH_LIB)) \
+               -Wl,--no-as-needed -ltorch -ltorch_cpu -lc10 $(if $(TORCH_CUDA),-ltorch_cuda -lc10_cuda)
 , := ,
 
 # ccache compiles nothing twice, and does without precompiled headers.
@@ -129,7 +129,8 @@ define TOOL_RULE
 $(B)/$(1): $(patsubst %.cc,$(B)/%.o,$(if $(filter synpo-render-no,$(1)-$(DRAW)),tools/without_drawing/$(1).cc, \
            tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc))) $(B)/libsynpo.a
 	$$(call say,LINK,$$@)
-	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) $(if $(filter synpo-render,$(1)),$$(DRAW_LIBS))
+	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) \
+	    $(if $(filter synpo-render,$(1)),$$(DRAW_LIBS))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
 
@@ -197,8 +198,10 @@ $(B)/std.h.gch/O1.gch: OPTIMISE = -O1
 
 $(B)/builtin_maps.cc: $(MAPS) Makefile
 	@mkdir -p $(@D)
-	@{ echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
-	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; echo '};'; echo '}'; } > $@
+	@{ echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; \
+	   echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
+	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; \
+	   echo '};'; echo '}'; } > $@
 # Written again, and with it compiled, where the commit is another one than that of the last build. make COMMIT=abc1234
 # says it where there is no git.
 ifneq ($(origin COMMIT),command line)

@@ -9,6 +9,7 @@
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
 #include "base/error.h"
+#include "base/files/descriptor.h"
 #include "base/files/io.h"
 #include "base/signals.h"
 #include "base/text.h"
@@ -97,7 +98,9 @@ int gen_expert(int argc, char** argv) {
     return 0;
   }
   const int64_t total = stream.per_pair > 0 ? stream.per_pair * int64_t(stream.pairs.size()) : count;
-  Progress progress("synpo-gen-expert", "trajectories", total, quiet || output.is_stdout());
+  // In a pipe the reader shows its own.
+  const bool piped = output.is_stdout() && file_of_descriptor(1).empty();
+  Progress progress("synpo-gen-expert", "trajectories", total, quiet || piped);
   for (int64_t i = 0; total == 0 || i < total; ++i) {
     output.write(format_trajectory(stream.trajectory(world, i)) + "\n");
     progress.update(uint64_t(i + 1));

@@ -45,7 +45,8 @@ sizes = {"F16": 2, "F32": 4, "F64": 8, "I32": 4, "I64": 8, "U8": 1, "U64": 8}
 for number, shape in enumerate([[2, 3], [], [0], [1, 1, 4]]):
     tensors = {f"t{i}": (kind, shape, bytes(prod(shape) * size)) for i, (kind, size) in enumerate(sizes.items())}
     header, data = safetensors({"a": "b"} if number else {}, tensors)
-    (out / "safetensors" / f"types{number}").write_bytes(struct.pack("<Q", len(one_line(header))) + one_line(header) + data)
+    head = one_line(header)
+    (out / "safetensors" / f"types{number}").write_bytes(struct.pack("<Q", len(head)) + head + data)
 
 # What a resumed training has kept.
 names = ["memory/episodes", "memory/serials", "memory/added", "running/episodes", "running/running", "running/next",

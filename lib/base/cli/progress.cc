@@ -72,15 +72,17 @@ Progress::~Progress() { finish(); }
 
 void Progress::update(uint64_t done, const std::string& note) {
   if (quiet_) return;
+  done_ = done;
+  note_ = note;
   const TimePoint moment = now();
   if (seconds_between(last_, moment) < (terminal_ ? kBarEvery_s : kLineEvery_s)) return;
   last_ = moment;
-  show(done, note, seconds_between(start_, moment));
+  show(seconds_between(start_, moment));
 }
 
-void Progress::show(uint64_t done, const std::string& note, double elapsed_s) {
-  ProgressFields fields{tool_, unit_, done, total_, -1, double(done - first_) / std::max(elapsed_s, 1e-9), note};
-  if (total_ > 0 && done > first_ && done < total_) fields.left_s = double(total_ - done) / fields.rate;
+void Progress::show(double elapsed_s) {
+  ProgressFields fields{tool_, unit_, done_, total_, -1, double(done_ - first_) / std::max(elapsed_s, 1e-9), note_};
+  if (total_ > 0 && done_ > first_ && done_ < total_) fields.left_s = double(total_ - done_) / fields.rate;
   if (!terminal_) {
     std::fprintf(stderr, "%s\n", progress_line(fields, 0).c_str());
     return;
@@ -106,7 +108,9 @@ void Progress::line(const std::string& text) {
 }
 
 void Progress::finish() {
-  if (!shown_.empty()) std::fprintf(stderr, "\r\033[J%s\n", shown_.c_str());
+  if (shown_.empty()) return;
+  show(seconds_between(start_, now()));
+  std::fprintf(stderr, "\r\033[J%s\n", shown_.c_str());
   shown_.clear();
 }
 

@@ -33,16 +33,16 @@ class Progress {
   void say(const std::string& text);
   // The same, "tool: warning: text", which quiet does not silence.
   void warn(const std::string& text);
-  // Ends the bar's line, if one is shown.
+  // Ends the bar's line, if one is shown, with what the last update said.
   void finish();
 
  private:
-  void show(uint64_t done, const std::string& note, double elapsed_s);
+  void show(double elapsed_s);
   void line(const std::string& text);
   std::string tool_, unit_;
-  uint64_t total_, first_;
+  uint64_t total_, first_, done_ = 0;
   bool quiet_, terminal_;
-  std::string shown_;  // the bar's line, if one is shown
+  std::string note_, shown_;  // the last update's; the bar's line, if one is shown
   TimePoint start_, last_;
 };
 

@@ -130,7 +130,7 @@ void draw_counts(Canvas& canvas, const PlanGrid& place, const std::vector<int>& 
 }
 
 void draw_count_sign(Canvas& canvas, const Box& box) {
-  canvas.text(box.right(), box.y + box.height / 2, "9\u00d7", box.height * 3 / 4, kInk, Across::kRight,
+  canvas.text(box.right(), box.y + box.height / 2, "n\u00d7", box.height * 3 / 4, kInk, Across::kRight,
               Upright::kMiddle);
 }
 

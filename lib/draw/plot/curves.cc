@@ -97,6 +97,10 @@ void draw_band(Canvas& canvas, std::vector<Point> high, const std::vector<Point>
   canvas.polygon(high, colour, opacity, plot);
 }
 
+bool within(const Box& box, Point at) {
+  return at.x >= box.x && at.x <= box.right() && at.y >= box.y && at.y <= box.bottom();
+}
+
 // At values about as far apart as one another, those of different methods beside one another.
 void draw_markers(Canvas& canvas, const std::vector<Point>& line, const CurveLook& look, size_t method, size_t methods,
                   double scale, const Box& plot) {
@@ -104,9 +108,8 @@ void draw_markers(Canvas& canvas, const std::vector<Point>& line, const CurveLoo
   double next = plot.x + apart * (double(method) + 0.5) / double(methods);
   for (size_t i = 0; i < line.size(); ++i) {
     const Point at = line[i];
-    const bool inside = at.x >= plot.x && at.x <= plot.right() && at.y >= plot.y && at.y <= plot.bottom();
     // The value that is nearest to the place.
-    if (!inside || (i + 1 < line.size() && line[i + 1].x <= next) || at.x < next - apart / 2) continue;
+    if (!within(plot, at) || (i + 1 < line.size() && line[i + 1].x <= next) || at.x < next - apart / 2) continue;
     draw_curve_marker(canvas, at, look, scale);
     while (next <= at.x + apart / 2) next += apart;
   }
@@ -118,6 +121,9 @@ void draw_mean(Canvas& canvas, const std::vector<Point>& line, const CurveLook& 
   const int reach = int(std::ceil(kCurvePt * scale / 2));
   const Box clip = {plot.x - reach, plot.y - reach, plot.width + 2 * reach, plot.height + 2 * reach};
   canvas.line(line, kCurvePt * scale, look.colour, curve_dash(look, scale), clip);
+  // One value alone is a line without a length.
+  if (line.size() == 1 && look.marker == Marker::kNone && within(plot, line[0]))
+    canvas.disc(line[0], 2 * kCurvePt * scale, look.colour);
   if (look.marker != Marker::kNone) draw_markers(canvas, line, look, method, methods, scale, plot);
 }
 

@@ -25,6 +25,15 @@ widest() { awk '{ if (length($0) > most) most = length($0) } END { print most + 
     done
 }
 
+@test "a bar ends at 100 %; what goes into a file has one, what goes into a pipe leaves it to the reader" {
+    bar 80 "synpo-gen-expert -n 20000 >x"
+    [[ "$(tail -n 1 "$BATS_TEST_TMPDIR/bar")" == *" 100 % of 20.0 k trajectories"* ]]
+    bar 80 "synpo-eval -n 40 -p two.tsv -c a.ckpt >x"
+    [[ "$(tail -n 1 "$BATS_TEST_TMPDIR/bar")" == *" 100 % of 80 episodes"* ]]
+    run -0 on_terminal "synpo-gen-expert -n 20000 | tail -n 1 >x"
+    [ ! -s "$BATS_TEST_TMPDIR/screen" ]
+}
+
 @test "what matters most stays longest: the share, the time left, the tool's name" {
     bar 20 "synpo-gen-expert -n 20000 -o x"
     grep -qE '^[0-9]+ %(, [0-9:]+ left)?$' "$BATS_TEST_TMPDIR/bar"

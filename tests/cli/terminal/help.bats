@@ -1,19 +1,8 @@
 load ../common
 
-# The commands of every tool that have a --help of their own, one a line, the tools themselves too.
-all_commands() {
-    local tool
-    for tool in $TOOLS; do
-        echo "$tool"
-        case $tool in
-            synpo-matrix | synpo-render | synpo-finetune) "$tool" --help |
-                awk -v tool="$tool" '/^  [a-z]/ { print tool, $1 }' ;;
-        esac
-    done
-}
-
 @test "--help fits into 80 columns in a pipe, and into the terminal's width" {
-    all_commands >all
+    commands >all
+    tr ' ' '\n' <<<"$WITH_COMMANDS" >>all
     [ "$(wc -l <all)" -ge 26 ]
     while read -r -a command; do
         "${command[@]}" --help >text
@@ -28,7 +17,7 @@ all_commands() {
 }
 
 @test "help, help COMMAND: as --help" {
-    for tool in synpo-matrix synpo-render synpo-finetune; do
+    for tool in $WITH_COMMANDS; do
         "$tool" --help >whole
         "$tool" help | cmp - whole
         for command in $(awk '/^  [a-z]/ { print $1 }' whole); do

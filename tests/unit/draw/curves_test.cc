@@ -79,6 +79,17 @@ TEST(Curves, LinesAreWhereTheirValuesAreInTheirColours) {
     }
 }
 
+TEST(Curves, OneValueAloneIsSeen) {
+  const CurveSet set = average_runs({{"", {{{{100}, {40}}}}}}, {"seen"}, Band::kSd);
+  CurvesStyle style;
+  style.percent = true;
+  const CurvesLayout layout = lay_out_curves(set, style, font());
+  const Canvas canvas = draw_curves(set, style, font());
+  const Point at = layout.axes.place(layout.panels[0].plot, 100, 40);
+  // Two and a half points left of it, where a line of one and a half would not reach.
+  EXPECT_EQ(canvas.at(int(at.x - 2.5 * style.scale), int(at.y)), curve_look(set, false, 0, 0).colour);
+}
+
 TEST(Curves, ThePapersMethodsLookAlikeInEveryPicture) {
   const auto looks = [](const std::vector<std::string>& labels) {
     std::vector<MethodRuns> methods;
