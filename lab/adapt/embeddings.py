@@ -16,9 +16,9 @@ loss of the demonstrations is printed: the mean cross-entropy of a step. The way
     weighted     as learned, steps weighted as training draws them: 0.3 but where the agent stands on a treasure
     near         as from-mean, held to the old ones by their variance: a Gaussian prior in the place of the decay
 
-With --basis, alpha, theta, the policy's bias and the old embeddings are learned further first, from EPISODES of OLD's own
-pairs (synpo-eval --record; the labels are learned) and 3,000 updates of 512 steps, with N(0, (NOISE s)^2) added to every
-entry of the embeddings of each pair of a minibatch. psi stays as it is.
+With --basis, alpha, theta, the policy's bias and the old embeddings are learned further first, from EPISODES of OLD's
+own pairs (synpo-eval --record; the labels are learned) and 3,000 updates of 512 steps, with N(0, (NOISE s)^2) added to
+every entry of the embeddings of each step. psi stays as it is.
 
 Where both sides of a pair are new, likeliest goes to and fro between mazes and tasks until nothing changes.
 """
