@@ -71,6 +71,8 @@ TEST(RateText, OneAndZeroOnlyWhereAllOrNoneSucceeded) {
   EXPECT_EQ(rate_text(0, 100), "0.00");
   EXPECT_EQ(rate_text(1, 1000), "0.01");
   EXPECT_EQ(rate_text(833, 1000), "0.83");
+  EXPECT_EQ(rate_text(8449, 10000), "0.84");
+  EXPECT_EQ(rate_text(8451, 10000), "0.85");
   EXPECT_EQ(rate_text(999, 1000), "0.99");
   EXPECT_EQ(rate_text(7, 7), "1.00");
 }

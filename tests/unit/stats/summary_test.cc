@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <string>
 
 #include "helpers/matrix_rows.h"
 #include "helpers/table_helpers.h"
@@ -119,6 +121,26 @@ TEST(Summary, PartsThatNoRowNamesAreNotListed) {
   Matrix m = matrix({row("r1", "e", true, 0, 10, 8)});
   m.has_part = true;
   EXPECT_EQ(summarise(m).at(0).subsets.size(), 3u);
+}
+
+TEST(Heading, NamesTheRangeOfUpdatesAndTheFirstTwentySeeds) {
+  Matrix m;
+  const auto heading_of = [&m] { return heading(group_runs(m).at(0)); };
+  std::string seeds;
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    m.rows.push_back(row("r" + std::to_string(seed), seed, "e", "R-B", true, 1));
+    m.rows.back().updates = int64_t(seed == 7 ? 90 : 50);
+    m.rows.back().temperature = 0.5;
+    seeds += " " + std::to_string(seed);
+  }
+  const std::string start = "synpo on gridworld, window 1, 50 to 90 updates, temperature 0.5: ";
+  EXPECT_EQ(heading_of(), start + "20 runs (seeds" + seeds + ")");
+  m.rows.push_back(m.rows[0]);
+  m.rows.back().run = "r21";
+  m.rows.back().seed = 21;
+  EXPECT_EQ(heading_of(), start + "21 runs (seeds" + seeds + " ...)");
+  m.rows.resize(1);
+  EXPECT_EQ(heading_of(), "synpo on gridworld, window 1, 50 updates, temperature 0.5: 1 run (seed 1)");
 }
 
 TEST(Summary, NewPairsAreNotUnseenOnes) {
