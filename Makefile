@@ -8,8 +8,10 @@ B        := build
 # Programs, tables, pictures and tests take longer to compile than to run. CXXFLAGS of the caller come last and win.
 QUICK    := tools lib/draw lib/stats/matrix lib/stats/report tests/unit
 OPTIMISE  = $(if $(filter $(QUICK:%=$(B)/%/%),$@),-O1,-O3)
+# Clang warns of the GNU library's own std::stable_sort.
+OF_CLANG := -Wno-unknown-warning-option -Wno-deprecated-declarations
 ALL_CXXFLAGS = -std=c++20 -Wall -Wextra -Wno-maybe-uninitialized -Wno-restrict -fno-math-errno -ffp-contract=fast \
-               $(if $(findstring clang,$(CXX)),-Wno-unknown-warning-option) \
+               $(if $(findstring clang,$(CXX)),$(OF_CLANG)) \
                -pthread -MMD -MP -Ilib -Itools $(INCLUDES) $(if $(KIT),-isystem $(KIT)) \
                -isystem $(or $(KIT),/usr/include)/eigen3 $(OPTIMISE) $(CXXFLAGS)
 OPENCV_CFLAGS := -isystem /usr/include/opencv4

@@ -211,7 +211,6 @@ Scene make_scene(Parallel& parallel, const KitchenSet& world, int env, const std
     const std::vector<bool> reached = kitchen_reachable(tables, layouts[layout]);
     const size_t first = scene.view.size();
     scene.view.resize(first + reached.size(), -1);
-    KitchenState state;
     // As many states as there is room for are drawn at once; rows are given out in their order, whatever the threads.
     std::vector<size_t> drawn;
     const auto draw_all = [&] {
