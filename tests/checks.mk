@@ -28,6 +28,8 @@ IN_PARTS = seq 0 $$(($$(nproc) - 1)) | GTEST_TOTAL_SHARDS=$$(nproc) xargs -P 0 -
            env GTEST_SHARD_INDEX={} $(1)/unit-tests --gtest_brief=1
 ASAN_CLI := $(addprefix tests/cli/,broken.bats options.bats maps.bats matrix.bats files accidents/upstream.bats)
 TSAN_CLI := $(addprefix tests/cli/,train.bats eval.bats finetune.bats)
+# Tests send SIGSEGV and the like themselves.
+asan: export ASAN_OPTIONS := handle_segv=0:handle_sigbus=0:handle_sigfpe=0
 asan:
 	$(MAKE) B=build-asan CXXFLAGS='$(ASAN_FLAGS)' all build-asan/unit-tests
 	$(call IN_PARTS,build-asan)

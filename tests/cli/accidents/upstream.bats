@@ -33,11 +33,10 @@ SMALL=("${TINY[@]}" -n 2 -p pairs.tsv)
 }
 
 @test "kill -9 of the first command of a pipe: the trainer says so, 65, and there is no checkpoint" {
-    sh -c 'echo $$ >pid; exec synpo-gen-expert -p pairs.tsv -n 100000000 -s 1 --end' |
+    sh -c 'echo $$ >pid; exec synpo-gen-expert -p pairs.tsv -n 100000000 -s 1 --end' | tee came |
         synpo-train "${SMALL[@]}" --expect-end -o got.ckpt 2>err &
     local pipe=$! status=0
-    until [ -s pid ]; do sleep 0.05; done
-    sleep 0.3
+    until [ -s came ]; do sleep 0.05; done
     kill -9 "$(cat pid)"
     wait "$pipe" || status=$?
     [ "$status" -eq 65 ]
