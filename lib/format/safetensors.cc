@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/half.h"
 #include "format/json_text.h"
+#include "format/kind.h"
 
 namespace synpo {
 namespace {
@@ -148,7 +149,10 @@ SafeTensors read_safetensors(Input& input) {
   const size_t got = input.read(&length, sizeof length);
   if (got == 0) bad("it is empty");
   if (got < sizeof length) bad("it ends at byte ", got, ", expected a safetensors header");
-  if (length < 2 || length > kHeaderLimit) bad("not a safetensors file (header length ", length, ")");
+  if (length < 2 || length > kHeaderLimit) {
+    const std::string_view beginning(reinterpret_cast<const char*>(&length), sizeof length);
+    bad("not a safetensors file (header length ", length, ")", another_kind(beginning, FileKind::kCheckpoint));
+  }
   const std::string header = read_bytes(input, length, "the header");
   const Json json = [&] {
     try {

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "format/json_text.h"
+#include "format/kind.h"
 
 namespace synpo {
 namespace {
@@ -129,7 +130,8 @@ Trajectory parse_trajectory(const std::string& line, int step_limit) {
     try {
       return parse_json(line);
     } catch (const Error& error) {
-      fail(error.code(), "found ", line.empty() ? "an empty line" : error.what(), ", expected a JSON object");
+      fail(error.code(), "found ", line.empty() ? "an empty line" : error.what(), ", expected a JSON object",
+           another_kind(line, FileKind::kTrajectories));
     }
   }();
   if (!object.is_object()) fail(Exit::kData, "found ", quoted(line), ", expected a JSON object");

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "base/text.h"
+#include "format/kind.h"
 
 namespace synpo {
 namespace {
@@ -44,7 +45,8 @@ int TsvReader::need(const std::string& column) const {
   std::string found;
   for (size_t i = 0; i < columns_.size() && i < 8; ++i) found += (i ? ", " : "") + quoted(columns_[i]);
   if (columns_.size() > 8) found += ", ...";
-  fail(Exit::kData, input_.name(), ": line 1: no column '", column, "', found ", found);
+  fail(Exit::kData, input_.name(), ": line 1: no column '", column, "', found ", found,
+       columns_.size() == 1 ? another_kind(columns_[0], FileKind::kTable) : "");
 }
 
 bool TsvReader::next() { return row(fields_); }
@@ -66,7 +68,7 @@ bool TsvReader::row(std::vector<std::string>& fields) {
   if (const size_t bad = first_bad_byte(line); bad != std::string::npos) {
     const auto column = std::count(line.begin(), line.begin() + bad, '\t') + 1;
     fail(Exit::kData, input_.name(), ": line ", input_.line_number(), ", column ", column, ": found ",
-         name_bad_byte(line, bad), ", expected UTF-8 text");
+         name_bad_byte(line, bad), ", expected UTF-8 text", header ? another_kind(line, FileKind::kTable) : "");
   }
   if (!header && count != columns_.size()) {
     if (line.empty())

@@ -99,3 +99,19 @@ says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] ||
     fails 64 synpo-finetune adapt -q -c sf.ckpt -n 1 <e.jsonl
     says "needs more than demonstrations hold (sf: synpo-train --sf-loss ce makes policies that can be adapted)"
 }
+
+@test "a file of another kind is told what it is" {
+    fails 65 synpo-matrix summary <a.ckpt
+    says "expected UTF-8 text (this is a checkpoint)"
+    fails 65 synpo-matrix summary <e.jsonl
+    says "(this is JSON, as trajectories are)"
+    fails 65 synpo-train -n 1 <a.ckpt
+    says "expected a JSON object (this is a checkpoint)"
+    fails 65 synpo-train -n 1 <m.tsv
+    says "expected a JSON object (this is a table)"
+    fails 65 synpo-eval <e.jsonl
+    says "(this is JSON, as trajectories are)"
+    synpo-render heatmap <m.tsv >m.png
+    fails 65 synpo-eval <m.png
+    says "(this is a picture)"
+}
