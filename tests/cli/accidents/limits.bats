@@ -65,7 +65,12 @@ limited() { (ulimit -v "$1" && exec "${@:2}"); }
     grep -qE 'cannot start thread [0-9]+ of 1024: ' "$BATS_TEST_TMPDIR/err"
 }
 
-limited_train() { limited "$1" synpo-train "${SMALL[@]}" -j 1024 <e.jsonl 2> >(sed 's/synpo-train/limited_train/' >&2); }
+limited_train() {
+    local status=0
+    limited "$1" synpo-train "${SMALL[@]}" -j 1024 <e.jsonl 2>"$BATS_TEST_TMPDIR/said" || status=$?
+    sed 's/synpo-train/limited_train/' "$BATS_TEST_TMPDIR/said" >&2
+    return $status
+}
 
 @test "64 threads, whatever the processors: the same bytes as one" {
     synpo-train "${SMALL[@]}" -j 1 <e.jsonl >one
