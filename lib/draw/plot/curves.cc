@@ -121,10 +121,10 @@ void draw_mean(Canvas& canvas, const std::vector<Point>& line, const CurveLook& 
   const int reach = int(std::ceil(kCurvePt * scale / 2));
   const Box clip = {plot.x - reach, plot.y - reach, plot.width + 2 * reach, plot.height + 2 * reach};
   canvas.line(line, kCurvePt * scale, look.colour, curve_dash(look, scale), clip);
-  // One value alone is a line without a length.
-  if (line.size() == 1 && look.marker == Marker::kNone && within(plot, line[0]))
+  if (look.marker != Marker::kNone)
+    draw_markers(canvas, line, look, method, methods, scale, plot);
+  else if (line.size() == 1 && within(plot, line[0]))  // a line without a length
     canvas.disc(line[0], 2 * kCurvePt * scale, look.colour);
-  if (look.marker != Marker::kNone) draw_markers(canvas, line, look, method, methods, scale, plot);
 }
 
 // The first method is drawn last, on top.

@@ -166,7 +166,8 @@ limited_train() {
     mkdir locales
     localedef -i de_DE -f UTF-8 locales/de_DE.UTF-8 2>/dev/null || skip "there is no de_DE to make"
     everything() {
-        synpo-train "${TINY[@]}" -n 3 --log log.tsv --report 1 --evaluate-every 3 --evaluate-episodes 4 -o out.ckpt <e.jsonl
+        synpo-train "${TINY[@]}" -n 3 --log log.tsv --report 1 --evaluate-every 3 --evaluate-episodes 4 -o out.ckpt \
+            <e.jsonl
         cut -f 1-3,6- log.tsv
         synpo-eval -p two.tsv -n 2 -c out.ckpt
         synpo-matrix summary m.tsv

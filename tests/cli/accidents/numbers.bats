@@ -63,8 +63,8 @@ beyond() {
     local command option value low high number=0 tried=0
     local -a said lows highs
     : >none
-    for command in "synpo-gen-expert -p none" synpo-train synpo-eval "synpo-finetune adapt -c none" "synpo-finetune ppo" \
-        "synpo-matrix split" "synpo-matrix rows" "synpo-matrix show" "synpo-matrix filter" "synpo-render heatmap" \
+    for command in "synpo-gen-expert -p none" synpo-train synpo-eval "synpo-finetune adapt -c none" \
+        "synpo-finetune ppo" "synpo-matrix split" "synpo-matrix rows" "synpo-matrix show" "synpo-matrix filter" "synpo-render heatmap" \
         "synpo-render curves" "synpo-render map" "synpo-render view" "synpo-render episode" "synpo-render policy"; do
         lows=() highs=()
         for option in $(with_argument "${command% -? none}"); do

@@ -19,7 +19,8 @@ load ../common
     synpo-gen-expert -q -n 4 >expert.jsonl
     if ! grep -qw avx512_bf16 /proc/cpuinfo; then
         fails 69 synpo-train --precision bf16 -n 1 -o out.ckpt <expert.jsonl
-        says "found precision bf16 on the device cpu, whose processor has no products of it (AVX-512 BF16), expected float32"
+        why="found precision bf16 on the device cpu, whose processor has no products of it (AVX-512 BF16)"
+        says "$why, expected float32"
         [ ! -e out.ckpt ]
         return
     fi

@@ -21,8 +21,8 @@ kill_tree() {
     kill -KILL "$1"
 }
 
-# What must be the same, whatever happened: matrices, the page, and how far each log goes. (A stop shows in a log: its row's
-# losses are those of the updates since.)
+# What must be the same, whatever happened: matrices, the page, and how far each log goes. (A stop shows in a log: its
+# row's losses are those of the updates since.)
 results() (
     cd "$1/small" || exit
     cat ./*.tsv README.md

@@ -25,7 +25,8 @@ commit_all() {
     comm -13 named targets >lacking
     [ ! -s lacking ] || complain "make help does not name $(tr '\n' ' ' <lacking)"
     while read -r target; do
-        make -n "$target" >/dev/null 2>err || ! grep -q "No rule to make target '$target'" err || complain "no target $target"
+        make -n "$target" >/dev/null 2>err || ! grep -q "No rule to make target '$target'" err ||
+            complain "no target $target"
     done <named
     [ "$(awk 'length > 100' text | wc -l)" -eq 0 ]
 }
