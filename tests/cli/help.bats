@@ -128,11 +128,17 @@ man_options() {
 
 @test "the man page's synopsis of a command and its --help agree" {
     for command in "${COMMANDS[@]}"; do
-        [[ $command == *' '* ]] || continue
+        ! has_commands "$command" || continue
         $command --help >help.txt
-        # -h and --version stand once, for the tool; of -n, --count the synopsis has either.
+        # -h and --version stand once, for the tool; of -n, --count the synopsis has either. Without a command it has
+        # the options of the first group, before those of hyper-parameters.
         help_options help.txt >in_help
-        man_options "$ROOT/man/${command% *}.1" synopsis "${command#* }" >in_man
+        if [[ $command == *' '* ]]; then
+            man_options "$ROOT/man/${command% *}.1" synopsis "${command#* }" >in_man
+        else
+            man_options "$ROOT/man/$command.1" synopsis >in_man
+            awk '/^ +-/ { begun = 1 } begun && /^$/ { exit } { print }' help.txt >group && mv group help.txt
+        fi
         [ -s in_man ]
         comm -13 in_help in_man >lacking
         [ ! -s lacking ] || complain "$command: not in --help: $(tr '\n' ' ' <lacking)"
@@ -147,5 +153,13 @@ man_options() {
     for page in "$ROOT"/man/*.[157]; do
         LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=80 man --warnings -E UTF-8 -l -Tutf8 -Z "$page" >/dev/null 2>warnings
         [ ! -s warnings ] || complain "$page: $(cat warnings)"
+    done
+}
+
+@test "no line of a man page is longer than 80 columns, those of examples neither" {
+    for page in "$ROOT"/man/*.[157]; do
+        LC_ALL=C.UTF-8 MANROFFSEQ='' MANWIDTH=80 man -E UTF-8 -l "$page" >text
+        [ "$(LC_ALL=C.UTF-8 wc -L <text)" -le 80 ] || complain "$page: $(LC_ALL=C.UTF-8 grep -E '^.{81}' text)"
+        grep -q 'SEE ALSO' text
     done
 }

@@ -24,6 +24,20 @@ strict() { /usr/bin/python3 "$ROOT/tests/cli/package/strict_safetensors.py" "$@"
     [[ $output == *"type U64"* ]]
 }
 
+@test "the manual page's Python reads a checkpoint, whole or in half precision, and finds its hash" {
+    synpo-train "${TINY[@]}" -n 2 -p pairs.tsv <e.jsonl >whole.ckpt
+    synpo-finetune strip --half <whole.ckpt >half.ckpt
+    awk '/^\.Bd/ { inside = 1; next } /^\.Ed/ { inside = 0; print "" } inside' "$ROOT/man/synpo-checkpoint.5" |
+        sed -n '/^import json/,/^print/p' >read.py
+    grep -q '^U = ' read.py
+    for file in whole half; do
+        { sed "s/synpo.ckpt/$file.ckpt/" read.py && echo 'print(U.shape, numpy.isfinite(U).all())'; } >$file.py
+        /usr/bin/python3 $file.py >got
+        { synpo-eval --describe $file.ckpt | jq -r .weights_hash && echo '(5, 128) True'; } >want
+        cmp want got
+    done
+}
+
 @test "a checkpoint with unsigned numbers, as older ones have them, is gone on from to the same bits" {
     synpo-train "${TINY[@]}" -n 4 -p pairs.tsv <e.jsonl >four.ckpt
     synpo-train "${TINY[@]}" -n 2 -p pairs.tsv <e.jsonl >two.ckpt

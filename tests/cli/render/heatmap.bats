@@ -211,8 +211,8 @@ END
 }
 
 @test "the matrix of the man page, made with awk" {
-    sed -n '/^\$ awk .BEGIN/,/hand.png$/p' "$ROOT/man/synpo-render.1" | sed 's/^\$ //; s/\\et/\\t/' >example
-    [ "$(wc -l <example)" -eq 4 ]
+    sed -n '/^awk .BEGIN/,/hand.png$/p' "$ROOT/man/synpo-render.1" | sed 's/\\et/\\t/' >example
+    [ "$(wc -l <example)" -eq 7 ]
     bash example
     [ -s hand.png ]
 }
