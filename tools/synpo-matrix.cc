@@ -59,7 +59,7 @@ int matrix_summary(int argc, char** argv) {
 
 int matrix_merge(int argc, char** argv) {
   std::string output_path = "-";
-  Options options("synpo-matrix merge", "[OPTION]... [MATRIX]... >MATRIX",
+  Options options("synpo-matrix merge", "[OPTION]... [MATRIX]... > MATRIX",
                   "Puts matrices of shards and seeds together; refuses to count an episode twice.");
   options.text('o', "output", "FILE", "where the matrix goes", output_path);
   const Matrix matrix = read_matrices(options.parse(argc, argv, 0, kMostFiles));

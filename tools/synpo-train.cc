@@ -28,8 +28,8 @@ namespace {
 void summarise(const Training& training) {
   rusage usage;
   getrusage(RUSAGE_SELF, &usage);
-  std::fprintf(stderr, "synpo-train: %s%lld updates, %s states, peak memory %.0f MB\n",
-               training.finished() ? "" : "stopped: ", (long long)training.updates(),
+  std::fprintf(stderr, "synpo-train: %s%s, %s states, peak memory %.0f MB\n",
+               training.finished() ? "" : "stopped: ", counted(training.updates(), "update").c_str(),
                short_count(double(training.run().model().states)).c_str(), usage.ru_maxrss / 1024.0);
 }
 

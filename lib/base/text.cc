@@ -1,5 +1,8 @@
 #include "base/text.h"
 
+#include <locale.h>
+#include <wchar.h>
+
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
@@ -59,6 +62,27 @@ Character character_at(std::string_view text, size_t at) {
   uint32_t code = uint8_t(text[at]) & (length == 1 ? 0x7f : 0x7f >> length);
   for (const char next : text.substr(at + 1, length - 1)) code = code << 6 | (uint8_t(next) & 0x3f);
   return {length, code};
+}
+
+int columns_of(uint32_t code) {
+  constexpr uint32_t kFirstMark = 0x300;
+  if (code < kFirstMark) return 1;
+  static const locale_t unicode = newlocale(LC_CTYPE_MASK, "C.UTF-8", nullptr);
+  if (!unicode) return 1;
+  const locale_t before = uselocale(unicode);
+  const int columns = wcwidth(wchar_t(code));
+  uselocale(before);
+  return columns < 0 ? 1 : columns;
+}
+
+size_t columns_of(std::string_view text) {
+  size_t columns = 0;
+  for (size_t i = 0; i < text.size();) {
+    const auto [length, code] = character_at(text, i);
+    columns += length > 0 ? size_t(columns_of(code)) : 1;
+    i += std::max<size_t>(length, 1);
+  }
+  return columns;
 }
 
 bool is_control(uint32_t code) { return code < 0x20 || (code >= 0x7f && code < 0xa0); }
@@ -131,6 +155,8 @@ std::string alternatives(const std::vector<std::string>& words) {
   for (size_t i = 0; i < words.size(); ++i) list += (i == 0 ? "" : i + 1 < words.size() ? ", " : " or ") + words[i];
   return list;
 }
+
+std::string counted(int64_t n, std::string_view noun) { return concat(n, " ", noun, n == 1 ? "" : "s"); }
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names) {
   constexpr size_t kLongest = 100, kMostNames = 10'000, kMostNamed = 3;

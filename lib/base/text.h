@@ -20,6 +20,12 @@ struct Character {
 };
 Character character_at(std::string_view text, size_t at);
 
+// Columns that a terminal gives to a character: 2 for those of East Asian scripts and for small pictures, 0 for a mark
+// that stands on the character before it, 1 for others.
+int columns_of(uint32_t code);
+// The same of UTF-8 text.
+size_t columns_of(std::string_view text);
+
 // Whether a terminal acts on this character where it should show it: C0 and C1 control characters and DEL.
 bool is_control(uint32_t code);
 
@@ -44,6 +50,9 @@ std::string shortest(double value);
 
 // "a, b or c", as a sentence names choices; "" for an empty list.
 std::string alternatives(const std::vector<std::string>& words);
+
+// "1 step", "2 steps".
+std::string counted(int64_t n, std::string_view noun);
 
 // " (did you mean 'count'?)", with those of the names that `word` may be a slip of the pen for: letters that are wrong,
 // missing, too many or swapped with their neighbours, one for every three letters of the word; or its end is missing.

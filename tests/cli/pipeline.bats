@@ -61,7 +61,7 @@ load render/pictures
     [ ! -s quiet ]
     synpo-train "${TINY[@]:1}" -n 1 <e.jsonl >b 2>words
     cmp a b
-    grep -q '^synpo-train: 1 updates, .* peak memory [0-9]* MB$' words
+    grep -q '^synpo-train: 1 update, .* peak memory [0-9]* MB$' words
     synpo-eval -q -p two.tsv -n 1 <a >m 2>quiet
     [ ! -s quiet ]
 }

@@ -123,8 +123,8 @@ int adapt(int argc, char** argv) {
   if (adapted.demonstrations() == 0) fail(Exit::kData, input.whole_name(), " has no trajectory");
   Progress progress("synpo-finetune", "updates", uint64_t(updates), quiet);
   if (stream.tested_start()) progress.warn(words(*stream.tested_start()));
-  progress.say(concat(adapted.demonstrations(), " demonstrations, ", adapted.new_envs(), " new environments, ",
-                      adapted.new_tasks(), " new tasks"));
+  progress.say(concat(counted(adapted.demonstrations(), "demonstration"), ", ",
+                      counted(adapted.new_envs(), "new environment"), ", ", counted(adapted.new_tasks(), "new task")));
   for (int64_t i = 0; i < updates; ++i) {
     const Losses losses = adapted.update();
     progress.update(uint64_t(i + 1), "loss " + std::to_string(losses.total).substr(0, 5));

@@ -8,7 +8,7 @@ namespace synpo {
 
 int matrix_compare(int argc, char** argv) {
   std::string output_path = "-";
-  int64_t most = 10, unused = 2000;
+  int64_t most = 10, unused_samples = 2000, unused_seed = 1;
   bool any_start = false, table = false;
   Options options("synpo-matrix compare", "[OPTION]... A B",
                   "What B does better and worse than A, pair by pair on the start states that both were given.");
@@ -16,8 +16,8 @@ int matrix_compare(int argc, char** argv) {
       .flag(0, "any-start", "compare pairs whose start states differ, too", any_start)
       .flag(0, "tsv", "a table for machines, of all pairs", table);
   // Nothing is drawn, but scripts may name a seed.
-  options.integer(0, "samples", "COUNT", "has no effect: nothing is drawn", unused, 100, 1000000)
-      .integer('s', "seed", "SEED", "has no effect either", unused, 0, INT64_MAX);
+  options.integer(0, "samples", "COUNT", "has no effect: nothing is drawn", unused_samples, 100, 1000000)
+      .integer('s', "seed", "SEED", "has no effect either", unused_seed, 0, INT64_MAX);
   options.text('o', "output", "FILE", "where the comparison goes", output_path);
   const std::vector<std::string> files = options.parse(argc, argv, 2, 2);
   if (files[0] == "-" && files[1] == "-") fail(Exit::kUsage, "A and B cannot both be standard input");

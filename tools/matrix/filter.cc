@@ -59,7 +59,7 @@ int matrix_filter(int argc, char** argv) {
   RowFilter filter;
   std::string pairs_path, output_path = "-";
   bool seen = false, unseen = false, fresh = false;
-  Options options("synpo-matrix filter", "[OPTION]... [MATRIX]... >MATRIX", "The rows that fit all of the options.");
+  Options options("synpo-matrix filter", "[OPTION]... [MATRIX]... > MATRIX", "The rows that fit all of the options.");
   options.call('e', "env", "LIST", "of these environments", names_into(filter.envs))
       .call('t', "task", "LIST", "of these tasks", names_into(filter.tasks))
       .call(0, "pair", "ENV,TASK", "of this pair; may be repeated",

@@ -70,7 +70,7 @@ int matrix_split(int argc, char** argv) {
   SplitPlan plan;
   std::string world = "gridworld", envs, tasks, output_path = "-";
   std::vector<std::string> parts, singles;
-  Options options("synpo-matrix split", "[OPTION]... >PAIRS",
+  Options options("synpo-matrix split", "[OPTION]... > PAIRS",
                   "Draws which pairs of environments and tasks are seen in training.");
   options.integer('n', "seen", "COUNT", "seen pairs", plan.seen, 0, INT64_MAX)
       .shown_as("36 %: 144 of 400; with --setting 2 or 3 all of P")

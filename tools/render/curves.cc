@@ -1,5 +1,6 @@
 // synpo-render curves: run logs as learning curves.
 #include <poll.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -31,14 +32,15 @@ using namespace synpo;
 namespace {
 
 // The curves of a picture as a terminal shows them.
-std::string text_of(const CurveSet& set, const CurvesStyle& style, const std::string& y_title, bool percent,
-                    const ScreenSize& size, TerminalColour colour) {
+std::string text_of(const CurveSet& set, const std::string& note, const CurvesStyle& style, const ScreenSize& size,
+                    TerminalColour colour) {
   constexpr int kUsualColumns = 80, kUsualRows = 24;
   TextCurvesStyle text;
   text.title = style.title;
   text.x_title = style.x_title;
-  text.y_title = y_title;
-  text.percent = percent;
+  text.note = note;
+  text.y_title = style.y_title;
+  text.percent = style.percent;
   text.x_low = style.x.low;
   text.x_high = style.x.high;
   text.y_low = style.y.low;
@@ -93,6 +95,10 @@ std::vector<int64_t> state_of(const std::string& path) {
     before = std::move(now);
     pollfd stop = {stop_descriptor(), POLLIN, 0};
     poll(&stop, 1, kEvery_ms);
+    if (stop_signal() == SIGINT) {  // the terminal has written ^C
+      output.write("\n");
+      output.flush();
+    }
     stop_if_asked();
   }
 }
@@ -131,7 +137,7 @@ int curves(int argc, char** argv) {
       .call(0, "title", "TEXT", "title above the picture", drawn(style.title))
       .call(0, "size", "WxH", "width and height in points [380x270, 620x270 for two panels]",
             [&](const std::string& text) { parse_curves_size(text, style); });
-  picture.add_ansi(options, "text for a terminal instead of a PNG");
+  picture.add_ansi(options, "text for a terminal instead of a picture");
   options.flag(0, "follow", "--ansi, drawn anew as the logs grow, until Ctrl-C", follows);
   picture.add_to(options);
   const std::vector<LabelledFiles> logs = labelled_files(options.parse(argc, argv, 0, 1000));
@@ -171,7 +177,7 @@ int curves(int argc, char** argv) {
   const TerminalColour colour = picture.colour.of(output);
   const auto draw_text = [&](const ScreenSize& size) {
     const CurveSet set = read();
-    return (note.empty() ? "" : note + "\n") + text_of(set, style, style.y_title, style.percent, size, colour);
+    return text_of(set, note, style, size, colour);
   };
   if (follows) {
     for (const LabelledFiles& method : logs)

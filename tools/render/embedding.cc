@@ -9,6 +9,7 @@
 #include "base/cli/options.h"
 #include "base/error.h"
 #include "base/files/io.h"
+#include "base/text.h"
 #include "draw/canvas/font.h"
 #include "draw/canvas/key.h"
 #include "draw/face/world_face.h"
@@ -104,7 +105,7 @@ int embedding(int argc, char** argv) {
                                           : "Euclidean distance";
   const std::string marked = face->task_sign_words();
   style.caption = concat(what, kind == "pca" ? "" : " (darker: nearer)", " of the embeddings of ", of, ", size ",
-                         model.shape.embedding, "; ", model.method, ", ", model.updates, " updates",
+                         model.shape.embedding, "; ", model.method, ", ", counted(model.updates, "update"),
                          marked.empty() ? "" : "; a task's mark: " + marked);
   const Font font(picture.font);
   if (kind == "pca")

@@ -10,6 +10,7 @@
 #include "base/files/io.h"
 #include "base/parallel.h"
 #include "base/random.h"
+#include "base/text.h"
 #include "draw/canvas/font.h"
 #include "draw/face/policy_stage.h"
 #include "draw/face/world_face.h"
@@ -83,7 +84,7 @@ int policy(int argc, char** argv) {
   }
   if (style.title.empty())
     style.title = face->name(pair) + (model.is_seen(pair) ? " (seen)" : model.knows(pair) ? " (unseen)" : " (new)");
-  style.caption = concat(model.method, ", ", model.updates, " updates. ", style.caption);
+  style.caption = concat(model.method, ", ", counted(model.updates, "update"), ". ", style.caption);
   const Font font(picture.font);
   picture.finish(output, face->draw_policy(pair, stages, style, font));
   return 0;

@@ -17,8 +17,6 @@
 namespace synpo {
 namespace {
 
-const char kEllipsis[] = "\u2026";
-
 const char* const kFontPaths[] = {
     "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/dejavu-sans-fonts/DejaVuSans.ttf",
     "/usr/share/fonts/dejavu/DejaVuSans.ttf",          "/usr/share/fonts/TTF/DejaVuSans.ttf",
@@ -32,15 +30,6 @@ std::string font_path(const std::string& wish) {
     if (std::error_code error; std::filesystem::is_regular_file(path, error)) return path;
   fail(Exit::kNoInput, kNoFont,
        "cannot find the font DejaVuSans.ttf: install the Debian package fonts-dejavu-core, or name a TrueType file");
-}
-
-// Positions at which a new character of UTF-8 text begins, and the text's end.
-std::vector<size_t> character_starts(const std::string& text) {
-  std::vector<size_t> starts;
-  for (size_t i = 0; i < text.size(); ++i)
-    if ((uint8_t(text[i]) & 0xc0) != 0x80) starts.push_back(i);
-  starts.push_back(text.size());
-  return starts;
 }
 
 }  // namespace
@@ -132,63 +121,16 @@ int Font::width(const std::string& text, int size) const {
 
 int Font::digit_height(int size) const { return int(std::lround(size * shape("0").top)); }
 
+Ruler Font::ruler(int size) const {
+  return {.width_of = [this, size](const std::string& text) { return width(text, size); }, .gap = size / 8};
+}
+
 std::string Font::fitted(const std::string& text, int size, int width) const {
-  const std::vector<size_t> starts = character_starts(text);
-  const size_t characters = starts.size() - 1;
-  // Hardly any character is narrower than a pixel, and to measure takes thousands of bytes for each.
-  const size_t most = size_t(std::max(width, 0)) + 1;
-  if (characters <= most && this->width(text, size) <= width) return text;
-  // Names that share a long beginning differ at their end, so both are kept.
-  const auto shortened = [&](size_t kept) {
-    const size_t tail = kept / 2, head = kept - tail;
-    return text.substr(0, starts[head]) + kEllipsis + text.substr(starts[characters - tail]);
-  };
-  size_t fits = 0, too_long = std::min(characters, most);
-  while (fits + 1 < too_long) {
-    const size_t middle = (fits + too_long) / 2;
-    (this->width(shortened(middle), size) <= width ? fits : too_long) = middle;
-  }
-  return shortened(fits);
+  return synpo::fitted(text, ruler(size), width);
 }
 
 std::vector<std::string> Font::fitted_apart(const std::vector<std::string>& names, int size, int width) const {
-  std::vector<std::string> out;
-  std::map<std::string, std::set<std::string>> sharing;  // names by what they were shortened to
-  for (const std::string& name : names) {
-    out.push_back(fitted(name, size, width));
-    sharing[out.back()].insert(name);
-  }
-  for (const auto& [same, group] : sharing) {
-    if (group.size() < 2) continue;
-    // In order, so the first and the last share least.
-    const std::string &first = *group.begin(), &last = *group.rbegin();
-    const size_t differ =
-        size_t(std::mismatch(first.begin(), first.end(), last.begin(), last.end()).first - first.begin());
-    std::map<std::string, std::string> apart;
-    std::set<std::string> different;
-    for (const std::string& name : group) {
-      const std::vector<size_t> starts = character_starts(name);
-      size_t from = size_t(std::upper_bound(starts.begin(), starts.end(), differ) - starts.begin()) - 1, to = from;
-      const auto cut = [&](size_t end) {
-        return kEllipsis + name.substr(starts[from], starts[end] - starts[from]) +
-               (end + 1 < starts.size() ? kEllipsis : "");
-      };
-      while (to + 1 < starts.size() && to - from < size_t(std::max(width, 0)) &&
-             this->width(cut(to + 1), size) <= width)
-        ++to;
-      apart[name] = cut(to);
-      different.insert(apart[name]);
-    }
-    int number = 0;
-    if (different.size() < group.size())
-      for (auto& [name, shown] : apart) {
-        const std::string mark = concat("#", ++number);
-        shown = fitted(name, size, width - this->width(mark, size) - size / 8) + mark;
-      }
-    for (size_t i = 0; i < names.size(); ++i)
-      if (const auto shown = apart.find(names[i]); shown != apart.end() && out[i] == same) out[i] = shown->second;
-  }
-  return out;
+  return synpo::fitted_apart(names, ruler(size), width);
 }
 
 std::vector<std::string> Font::wrapped(const std::string& text, int size, int width) const {

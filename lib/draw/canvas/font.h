@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "draw/shortened.h"
 
 struct FT_FaceRec_;
 
@@ -43,10 +44,8 @@ class Font {
   int width(const std::string& text, int size) const;
   // Height of a digit: what to centre on in a cell.
   int digit_height(int size) const;
-  // `text`, or its beginning and end with an ellipsis between them, so that it is at most `width` pixels wide.
+  // Names in at most `width` pixels: see draw/shortened.h.
   std::string fitted(const std::string& text, int size, int width) const;
-  // Each of the names fitted, so that different ones stay different: where both ends are alike, by what lies between,
-  // or by a number.
   std::vector<std::string> fitted_apart(const std::vector<std::string>& names, int size, int width) const;
   // `text` broken at line ends, and at blanks into lines of at most `width` pixels; a longer word is fitted.
   std::vector<std::string> wrapped(const std::string& text, int size, int width) const;
@@ -59,6 +58,7 @@ class Font {
   std::shared_ptr<FT_FaceRec_> face() const;
 
  private:
+  Ruler ruler(int size) const;
   struct Face;
   std::shared_ptr<Face> face_;
   mutable std::map<std::string, TextShape> shapes_;

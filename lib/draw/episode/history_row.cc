@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "draw/colour.h"
 #include "world/observation.h"
 
@@ -27,7 +28,7 @@ void HistoryRow::draw(Canvas& canvas, int x, int y, const std::string& heading, 
     const bool missing = i < kHistory - count;
     const int ago = kHistory - 1 - i;
     draw({x, top, side_, side_}, i, missing);
-    const std::string when = ago == 0 ? "now" : concat(ago, ago == 1 ? " step ago" : " steps ago");
+    const std::string when = ago == 0 ? "now" : counted(ago, "step") + " ago";
     canvas.text(x + side_ / 2, top + side_ + px_(6), missing ? "before the start: zero" : when, text, kInk,
                 Across::kCentre);
   }

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -44,15 +45,13 @@ std::vector<int> spread_moments(int steps, const std::vector<int>& events, int c
   return chosen;
 }
 
-std::string counted(int n, const char* one, const char* many) { return concat(n, " ", n == 1 ? one : many); }
-
 std::string describe_end(const std::string& outcome, const std::vector<WorldStep>& results, int fewest) {
   const int steps = int(results.size());
   int cents = 0;
   for (const WorldStep& result : results) cents += result.reward_cents;
   char reward[32];
   std::snprintf(reward, sizeof reward, "%s%.2f", cents < 0 ? "\u2212" : "", std::abs(cents) / 100.0);
-  std::string out = outcome + " after " + counted(steps, "step", "steps");
+  std::string out = outcome + " after " + counted(steps, "step");
   if (fewest < 0) return out + ", reward " + reward;
   if (!results.back().success)
     out += concat(" (success takes ", fewest, ")");

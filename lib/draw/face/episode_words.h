@@ -12,9 +12,6 @@ namespace synpo {
 // events come before others.
 std::vector<int> spread_moments(int steps, const std::vector<int>& events, int count);
 
-// "1 step", "2 steps"
-std::string counted(int n, const char* one, const char* many);
-
 // "success after 41 steps (39 would do), reward 11.60"; `fewest` steps are what the planner takes,
 // -1 where that is not known.
 std::string describe_end(const std::string& outcome, const std::vector<WorldStep>& results, int fewest);

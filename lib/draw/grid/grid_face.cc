@@ -6,6 +6,7 @@
 
 #include "base/error.h"
 #include "base/rgb.h"
+#include "base/text.h"
 #include "draw/colour.h"
 #include "draw/face/episode_words.h"
 #include "draw/face/path.h"
@@ -70,8 +71,8 @@ std::string GridFace::deeds(const Film& film) const {
     }
   }
   std::string out = picks.empty() ? "; no treasure picked" : picks;
-  if (bumps > 0) out += "; " + counted(bumps, "step", "steps") + " into walls";
-  if (empty_picks > 0) out += "; " + counted(empty_picks, "pick", "picks") + " where nothing lies";
+  if (bumps > 0) out += "; " + counted(bumps, "step") + " into walls";
+  if (empty_picks > 0) out += "; " + counted(empty_picks, "pick") + " where nothing lies";
   return out;
 }
 

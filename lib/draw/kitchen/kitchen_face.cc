@@ -1,6 +1,7 @@
 #include "draw/kitchen/kitchen_face.h"
 
 #include "base/error.h"
+#include "base/text.h"
 #include "draw/face/episode_words.h"
 #include "draw/kitchen/kitchen_colours.h"
 #include "draw/kitchen/kitchen_picture.h"
@@ -67,7 +68,7 @@ std::string KitchenFace::deeds(const Film& film) const {
     }
   }
   if (words.empty()) words = "; nothing picked up";
-  if (without_effect > 0) words += "; " + counted(without_effect, "step", "steps") + " without effect";
+  if (without_effect > 0) words += "; " + counted(without_effect, "step") + " without effect";
   return words;
 }
 

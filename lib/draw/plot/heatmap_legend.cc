@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -14,9 +15,9 @@ constexpr double kBarPt = 15, kSwatchPt = 9, kEntryPt = 25, kShortEntryPt = 14, 
 const char* heading_of(const HeatTable& table) { return table.split ? "pairs" : "success rate"; }
 
 std::string detail_of(const HeatTable& table, const HeatGroup& group) {
-  if (table.split) return concat(group.members, group.members == 1 ? " pair" : " pairs");
+  if (table.split) return counted(group.members, "pair");
   if (group.pairs == 0) return "not evaluated";
-  return concat("mean ", rate_text(group), ", ", group.pairs, group.pairs == 1 ? " pair" : " pairs");
+  return concat("mean ", rate_text(group), ", ", counted(group.pairs, "pair"));
 }
 
 // With the space beneath it; pairs without rates need no bar.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "stats/report/text_table.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 constexpr size_t kDefaultWidth = 80;
 
 // As wide as its plan, or its name where there is none.
-size_t width_of(const BlockPlan& plan) { return plan.rows > 0 ? 2 * size_t(plan.columns) : text_width(plan.name); }
+size_t width_of(const BlockPlan& plan) { return plan.rows > 0 ? 2 * size_t(plan.columns) : columns_of(plan.name); }
 
 // A row, each stretch of one kind under one colour; blanks below the plan.
 std::string plan_row(const BlockPlan& plan, int row, TerminalColour colour) {
@@ -48,7 +48,7 @@ std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& 
       text += plans[i].name;
       if (i + 1 < end)
         text += std::string(
-            width_of(plans[i]) + between.size() - std::min(width_of(plans[i]), text_width(plans[i].name)), ' ');
+            width_of(plans[i]) + between.size() - std::min(width_of(plans[i]), columns_of(plans[i].name)), ' ');
     }
     text += '\n';
     for (int row = 0; row < rows; ++row) {

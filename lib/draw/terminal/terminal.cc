@@ -9,10 +9,15 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text.h"
+#include "draw/shortened.h"
 #include "stats/report/text_table.h"
 
 namespace synpo {
 namespace {
+
+constexpr char kEllipsis[] = "..";  // of names; every terminal has it
+constexpr size_t kLeastLabel = 16;  // columns that a task's name may have, however many environments there are
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -30,16 +35,14 @@ int cube_index(Rgb colour) {
 }
 
 std::vector<std::string> characters(const std::string& text) {
+  const std::vector<size_t> starts = character_starts(text);
   std::vector<std::string> all;
-  for (char c : text) {
-    if ((c & 0xc0) != 0x80 || all.empty()) all.emplace_back();
-    all.back() += c;
-  }
+  for (size_t i = 0; i + 1 < starts.size(); ++i) all.push_back(text.substr(starts[i], starts[i + 1] - starts[i]));
   return all;
 }
 
 std::string right(const std::string& text, size_t width) {
-  const size_t taken = text_width(text);
+  const size_t taken = columns_of(text);
   return taken < width ? std::string(width - taken, ' ') + text : text;
 }
 
@@ -47,7 +50,7 @@ std::string right(const std::string& text, size_t width) {
 std::string common_stem(const std::vector<std::string>& names, size_t room) {
   std::string stem = names[0].substr(0, names[0].find_first_of("0123456789"));
   for (const std::string& name : names)
-    if (!name.starts_with(stem) || name.size() == stem.size() || text_width(name) - text_width(stem) > room) return "";
+    if (!name.starts_with(stem) || name.size() == stem.size() || columns_of(name) - columns_of(stem) > room) return "";
   return stem;
 }
 
@@ -65,7 +68,7 @@ char split_mark(const HeatTable& table, int group) {
 
 // Names across: what they share in the corner and the rest above their columns, or else read downwards.
 std::string head(const HeatTable& table, size_t label, size_t cell) {
-  constexpr size_t kMostLines = 12;
+  constexpr int kMostLines = 12;
   const std::string stem = cell < 2 ? "" : common_stem(table.envs, cell - 1);
   std::string text;
   if (!stem.empty()) {
@@ -75,9 +78,11 @@ std::string head(const HeatTable& table, size_t label, size_t cell) {
   }
   std::vector<std::vector<std::string>> names;
   size_t lines = 0;
-  for (const std::string& env : table.envs) {
+  const Ruler downwards = {.width_of = [](const std::string& name) { return int(characters(name).size()); },
+                           .ellipsis = kEllipsis};
+  for (const std::string& env : fitted_apart(table.envs, downwards, kMostLines)) {
     names.push_back(characters(env));
-    lines = std::min(kMostLines, std::max(lines, names.back().size()));
+    lines = std::max(lines, names.back().size());
   }
   for (size_t line = 0; line < lines; ++line) {
     text += std::string(label, ' ');
@@ -123,14 +128,20 @@ std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, Termin
   for (auto* names : {&table.tasks, &table.envs})
     for (std::string& name : *names) name = printable(name);
   const bool coloured = colour != TerminalColour::kNone;
-  size_t label = 4;
-  for (const std::string& task : table.tasks) label = std::max(label, text_width(task));
   size_t cell = 4;
+  if (width > 0) {
+    const size_t cells = 1 + cell * table.envs.size(), room = size_t(width) > cells ? size_t(width) - cells : 0;
+    const Ruler ruler = {.width_of = [](const std::string& name) { return int(columns_of(name)); },
+                         .ellipsis = kEllipsis};
+    table.tasks = fitted_apart(table.tasks, ruler, int(std::max(room, kLeastLabel)));
+  }
+  size_t label = 4;
+  for (const std::string& task : table.tasks) label = std::max(label, columns_of(task));
   while (coloured && width > 0 && cell > 1 && label + 1 + cell * table.envs.size() > size_t(width)) --cell;
   std::string text = table.caption.empty() ? "" : table.caption + '\n';
   text += head(table, coloured ? label + 1 : label, cell);  // names above the numbers, not the marks
   for (size_t task = 0; task < table.tasks.size(); ++task) {
-    text += table.tasks[task] + std::string(label + 1 - text_width(table.tasks[task]), ' ');
+    text += table.tasks[task] + std::string(label + 1 - columns_of(table.tasks[task]), ' ');
     std::string line;
     for (size_t env = 0; env < table.envs.size(); ++env) {
       const HeatCell& at = table.at(task, env);
@@ -163,17 +174,16 @@ std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, Termin
       text += coloured ? ground_code(ramp_colour(group_ramp(table, int(i), scheme), kSplitShade), colour) + "   " +
                              kPlainCode + ' '
                        : std::string(1, split_mark(table, int(i))) + " ";
-      text += concat(group.name, ": ", group.members, group.members == 1 ? " pair\n" : " pairs\n");
+      text += concat(group.name, ": ", counted(group.members, "pair"), '\n');
       continue;
     }
     if (group.pairs == 0) continue;
     if (coloured)
       text +=
           ground_code(ramp_colour(group_ramp(table, int(i), scheme), group.rate()), colour) + "   " + kPlainCode + ' ';
-    text +=
-        concat(group.name, coloured || mark_of(table, int(i)) == ' ' ? "" : concat(" (", mark_of(table, int(i)), ")"),
-               ": ", percent(group.rate()), " % of ", group.episodes, " episodes, ", group.pairs,
-               group.pairs == 1 ? " pair\n" : " pairs\n");
+    text += concat(
+        group.name, coloured || mark_of(table, int(i)) == ' ' ? "" : concat(" (", mark_of(table, int(i)), ")"), ": ",
+        percent(group.rate()), " % of ", counted(group.episodes, "episode"), ", ", counted(group.pairs, "pair"), '\n');
   }
   return text;
 }

@@ -25,9 +25,9 @@ std::string ink_code(Rgb ink, TerminalColour colour);
 constexpr char kPlainCode[] = "\033[0m";
 
 // Tasks down, environments across. Rates in per cent; with colours in the ramps of `scheme`, and without a mark after
-// the rate for each kind of pairs but the seen ones. 100 and 0 stand there only where all or none succeeded. Where
-// coloured cells are wider than `width` columns (0: any width is well) they become smaller and lose their numbers. Ends
-// with the means of the kinds.
+// the rate for each kind of pairs but the seen ones. 100 and 0 stand there only where all or none succeeded. Where a
+// line is wider than `width` columns (0: any width is well) long names of tasks are shortened so that they stay
+// different, then coloured cells become smaller and lose their numbers. Ends with the means of the kinds.
 std::string terminal_matrix(const HeatTable& table, const Scheme& scheme, TerminalColour colour, int width);
 
 }  // namespace synpo

@@ -11,7 +11,8 @@
 
 #include "base/error.h"
 #include "base/rgb.h"
-#include "stats/report/text_table.h"
+#include "base/text.h"
+#include "draw/shortened.h"
 
 namespace synpo {
 namespace {
@@ -32,15 +33,15 @@ std::string utf8(uint32_t code) {
   return {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
 }
 
-std::string number(double value) {
+std::string number(double value, int digits = 3) {
   char text[32];
   const double size = std::abs(value);
   if (size >= 1e6 && size < 1e9)
-    std::snprintf(text, sizeof text, "%.3gM", value / 1e6);
+    std::snprintf(text, sizeof text, "%.*gM", digits, value / 1e6);
   else if (size >= 1e4 && size < 1e6)
-    std::snprintf(text, sizeof text, "%.4gk", value / 1e3);
+    std::snprintf(text, sizeof text, "%.*gk", digits + 1, value / 1e3);
   else
-    std::snprintf(text, sizeof text, "%.3g", value);
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
   return text;
 }
 
@@ -59,6 +60,37 @@ Range range_of(const std::vector<TextCurve>& curves, std::vector<double> TextCur
   if (!std::isnan(high)) range.high = high;
   if (!(range.low < range.high)) range.high = range.low + std::max(1e-9, std::abs(range.low) * 0.01);
   return range;
+}
+
+// The ends of the range and what cuts it into `parts`, the highest first, all with as many digits as tell them apart.
+std::vector<std::string> tick_labels(const Range& range, int parts) {
+  const double size = std::max(std::abs(range.low), std::abs(range.high)),
+               step = range.high / parts - range.low / parts;
+  const bool as_it_is = size >= 1e-3 && size < 1e9;
+  const char suffix = as_it_is && size >= 1e6 ? 'M' : as_it_is && size >= 1e4 ? 'k' : '\0';
+  const double unit = suffix == 'M' ? 1e6 : suffix == 'k' ? 1e3 : 1;
+  // To about a tenth of a step.
+  const double wanted = as_it_is ? 0.5 - std::log10(step / unit) : 1.5 + std::log10(size / step);
+  const int digits = int(std::clamp(std::ceil(wanted), 0.0, 15.0));
+  std::vector<std::string> labels;
+  for (int i = 0; i <= parts; ++i) {
+    const double value = (range.high * (parts - i) + range.low * i) / parts;
+    char text[40];
+    std::snprintf(text, sizeof text, as_it_is ? "%.*f" : "%.*g", digits, value / unit);
+    labels.push_back(text);
+  }
+  const auto has_zero = [](const std::string& text) {
+    return text.find('.') != std::string::npos && text.back() == '0';
+  };
+  while (as_it_is && std::all_of(labels.begin(), labels.end(), has_zero))
+    for (std::string& text : labels) text.erase(text.size() - (text[text.size() - 2] == '.' ? 2 : 1));
+  for (std::string& text : labels) {
+    if (text.find_first_of("123456789") == std::string::npos)
+      text.erase(0, text.find_first_of('0'));
+    else if (suffix)
+      text += suffix;
+  }
+  return labels;
 }
 
 // A plot of cells with `across` x `down` dots each, the top left one first.
@@ -80,6 +112,17 @@ class Dots {
     }
   }
 
+  // The curve's own mark in every so many columns, where it was drawn last.
+  void mark(size_t curve, int first, int every) {
+    for (int column = first; column < columns_; column += every)
+      for (int row = 0; row < rows_; ++row) {
+        Cell& cell = cells_[size_t(row) * size_t(columns_) + size_t(column)];
+        if (cell.dots == 0 || cell.curve != curve) continue;
+        cell.marked = true;
+        break;
+      }
+  }
+
   std::string row(int row, TerminalColour colour) const {
     std::string text, blanks;
     for (int column = 0; column < columns_; ++column) {
@@ -88,8 +131,9 @@ class Dots {
         blanks += ' ';
         continue;
       }
-      text += blanks +
-              inked(across_ == 2 ? utf8(0x2800 + cell.dots) : std::string(1, mark_of(cell.curve)), cell.curve, colour);
+      const bool braille = across_ == 2 && !cell.marked;
+      text +=
+          blanks + inked(braille ? utf8(0x2800 + cell.dots) : std::string(1, mark_of(cell.curve)), cell.curve, colour);
       blanks.clear();
     }
     return text;
@@ -99,6 +143,7 @@ class Dots {
   struct Cell {
     uint8_t dots = 0;
     size_t curve = 0;  // the last one that has a dot there
+    bool marked = false;
   };
   void dot(size_t curve, int x, int y) {
     constexpr uint8_t kBits[4][2] = {{0x01, 0x08}, {0x02, 0x10}, {0x04, 0x20}, {0x40, 0x80}};
@@ -110,32 +155,41 @@ class Dots {
   std::vector<Cell> cells_;
 };
 
-std::string cut(const std::string& text, int columns) {
-  if (text_width(text) <= size_t(columns)) return text;
-  std::string out;
-  for (size_t i = 0, taken = 0; i < text.size(); ++i) {
-    if ((text[i] & 0xc0) != 0x80 && ++taken > size_t(columns)) break;
-    out += text[i];
-  }
-  return out;
+Ruler ruler_of(const TextCurvesStyle& style) {
+  return {.width_of = [](const std::string& text) { return int(columns_of(text)); },
+          .ellipsis = style.braille ? "\u2026" : ".."};
+}
+
+std::string cut(const std::string& text, const TextCurvesStyle& style) {
+  return fitted(printable(text), ruler_of(style), style.columns);
+}
+
+// Whether braille alone would not tell the curves apart.
+bool needs_marks(const std::vector<TextCurve>& curves, const TextCurvesStyle& style) {
+  return style.braille && style.colour == TerminalColour::kNone && curves.size() > 1;
 }
 
 std::string padded(const std::string& text, size_t width) {
-  const size_t taken = text_width(text);
+  const size_t taken = columns_of(text);
   return taken < width ? std::string(width - taken, ' ') + text : text;
 }
 
 // Lines of entries, as many in each as there is room for.
 std::vector<std::string> legend(const std::vector<TextCurve>& curves, const TextCurvesStyle& style) {
-  std::vector<std::string> lines;
-  size_t taken = 0;
+  constexpr int kLeastName = 6;
+  std::vector<std::string> lines, names, values;
+  size_t longest = 0, taken = 0;
+  for (const TextCurve& curve : curves) {
+    names.push_back(printable(curve.name));
+    values.push_back(curve.y.empty() ? "no value" : number(curve.y.back()) + (style.percent ? " %" : ""));
+    longest = std::max(longest, values.back().size());
+  }
+  names = fitted_apart(names, ruler_of(style), std::max(kLeastName, style.columns - 3 - int(longest)));
   for (size_t i = 0; i < curves.size(); ++i) {
-    const std::string mark = style.braille ? utf8(0x2836) : std::string(1, mark_of(i));
-    const std::string last =
-        curves[i].y.empty() ? "no value" : number(curves[i].y.back()) + (style.percent ? " %" : "");
+    const std::string mark = style.braille && !needs_marks(curves, style) ? utf8(0x2836) : std::string(1, mark_of(i));
     const std::string words =
-        cut(printable(curves[i].name) + (curves[i].name.empty() ? "" : " ") + last, style.columns - 2);
-    const size_t width = 2 + text_width(words);
+        fitted(names[i] + (names[i].empty() ? "" : " ") + values[i], ruler_of(style), style.columns - 2);
+    const size_t width = 2 + columns_of(words);
     const bool fits = !lines.empty() && taken + 3 + width <= size_t(style.columns);
     if (fits)
       lines.back() += "   ";
@@ -149,7 +203,12 @@ std::vector<std::string> legend(const std::vector<TextCurve>& curves, const Text
 
 // Low, middle and high across the plot.
 std::string x_labels(const Range& range, const std::string& title, int columns) {
-  const std::string low = number(range.low), high = number(range.high);
+  constexpr int kMostDigits = 15;
+  std::string low = number(range.low), high = number(range.high);
+  for (int digits = 4; low == high && digits <= kMostDigits; ++digits) {
+    low = number(range.low, digits);
+    high = number(range.high, digits);
+  }
   std::string text =
       low + std::string(size_t(columns) - std::min(size_t(columns), low.size() + high.size()), ' ') + high;
   const size_t at = (size_t(columns) - std::min(size_t(columns), title.size())) / 2;
@@ -177,19 +236,20 @@ std::string text_curves(const std::vector<TextCurve>& curves, const TextCurvesSt
   const Range y = range_of(curves, &TextCurve::y, whole && std::isnan(style.y_low) ? 0 : style.y_low,
                            whole && std::isnan(style.y_high) ? 100 : style.y_high);
   std::vector<std::string> above;
-  if (!style.title.empty()) above.push_back(cut(printable(style.title), style.columns));
-  above.push_back(cut(printable(style.y_title), style.columns));
+  for (const std::string& line : {style.note, style.title})
+    if (!line.empty()) above.push_back(cut(line, style));
+  above.push_back(cut(style.y_title, style));
   const std::vector<std::string> below = legend(curves, style);
   const int rows = std::max(kLeastPlotRows, style.rows - int(above.size() + below.size()) - 2);
 
   // A label for every fourth part of the axis, or for its ends alone.
   const int parts = rows >= 9 ? 4 : 1;
+  const std::vector<std::string> ticks = tick_labels(y, parts);
   std::vector<std::string> labels(size_t(rows), "");
   size_t label = 0;
   for (int i = 0; i <= parts; ++i) {
-    std::string& at = labels[size_t(std::lround(double(rows - 1) * i / parts))];
-    at = number(y.high - (y.high - y.low) * i / parts);
-    label = std::max(label, at.size());
+    labels[size_t(std::lround(double(rows - 1) * i / parts))] = ticks[size_t(i)];
+    label = std::max(label, ticks[size_t(i)].size());
   }
   const int columns = std::max(kLeastPlotColumns, style.columns - int(label) - 2);
   Dots dots(columns, rows, style.braille);
@@ -199,6 +259,10 @@ std::string text_curves(const std::vector<TextCurve>& curves, const TextCurvesSt
       dots.line(i, x.share(curves[i].x[from]), y.share(curves[i].y[from]), x.share(curves[i].x[at]),
                 y.share(curves[i].y[at]));
     }
+  if (needs_marks(curves, style)) {
+    const int every = std::max(int(curves.size()), columns / 6);
+    for (size_t i = 0; i < curves.size(); ++i) dots.mark(i, int(i * size_t(every) / curves.size()), every);
+  }
 
   const std::string bar = style.braille ? "\u2502" : "|", corner = style.braille ? "\u2514" : "+",
                     dash = style.braille ? "\u2500" : "-";

@@ -15,8 +15,8 @@ struct TextCurve {
 
 struct TextCurvesStyle {
   static constexpr double kByData = std::numeric_limits<double>::quiet_NaN();
-  std::string title, x_title, y_title;
-  bool percent = false;  // y runs from 0 to 100 where no range is given
+  std::string note, title, x_title, y_title;  // the note stands above all
+  bool percent = false;                       // y runs from 0 to 100 where no range is given
   // Ends of the axes.
   double x_low = kByData, x_high = kByData, y_low = kByData, y_high = kByData;
   int columns = 80, rows = 24;  // of all of it
@@ -24,6 +24,7 @@ struct TextCurvesStyle {
   TerminalColour colour = TerminalColour::kNone;
 };
 
+// Without colours each of several braille curves bears a mark of its own in some places.
 // Lines of at most `columns` columns, `rows` in all where that is enough for a plot of a few rows: title, plot with
 // axes, and a legend with the last value of each curve. Curves that have no point are in the legend alone.
 std::string text_curves(const std::vector<TextCurve>& curves, const TextCurvesStyle& style);

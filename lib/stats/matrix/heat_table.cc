@@ -27,8 +27,6 @@ std::string joined(const std::set<std::string>& names) {
   return out;
 }
 
-std::string counted(int64_t n, const char* noun) { return concat(n, " ", noun, n == 1 ? "" : "s"); }
-
 std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTable& table) {
   std::set<std::string> runs;
   for (const MatrixRow* row : rows)

@@ -80,13 +80,11 @@ std::string heading(const Group& group) {
   std::string text = group.method.empty() ? "unnamed method" : printable(group.method);
   if (!group.world.empty()) text += concat(" on ", printable(group.world), ", window ", group.window);
   if (most > 0) {
-    text += concat(", ", least);
-    if (most > least) text += concat(" to ", most);
-    text += " updates";
+    text += ", " + (most > least ? concat(least, " to ") : "") + counted(int64_t(most), "update");
   }
   if (group.temperature) text += ", temperature " + shortest(*group.temperature);
   const std::vector<uint64_t> seeds = group.seeds();
-  text += concat(": ", seeds.size(), seeds.size() == 1 ? " run (seed" : " runs (seeds");
+  text += concat(": ", counted(int64_t(seeds.size()), "run"), seeds.size() == 1 ? " (seed" : " (seeds");
   for (size_t i = 0; i < seeds.size() && i < 20; ++i) text += concat(' ', seeds[i]);
   return text + (seeds.size() > 20 ? " ...)" : ")");
 }

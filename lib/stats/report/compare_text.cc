@@ -109,7 +109,7 @@ std::string comparison_text(const Comparison& c, size_t most) {
     rows.push_back({p.env, p.task, standing_text(p), concat(p.k_a, " of ", p.n_a), concat(p.k_b, " of ", p.n_b),
                     points(p.change()), points_range(p.interval)});
   }
-  text += concat("\nChanged most, of ", c.pairs.size(), c.pairs.size() == 1 ? " pair:\n" : " pairs:\n");
+  text += concat("\nChanged most, of ", counted(int64_t(c.pairs.size()), "pair"), ":\n");
   text += table_text(rows, TableFormat::kText, 3) + '\n';
   text += concat("Interval: Newcombe's, for this pair and these runs. ", clear, " of ", c.pairs.size(),
                  clear == 1 ? " leaves out 0" : " leave out 0", "; by chance alone it would be about ",

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "base/error.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -82,10 +83,6 @@ std::string latex(const std::vector<std::vector<std::string>>& rows, size_t left
 
 }  // namespace
 
-size_t text_width(const std::string& text) {
-  return size_t(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xc0) != 0x80; }));
-}
-
 std::string decimal(double value, int digits) {
   if (std::isnan(value)) return "-";
   char text[400];
@@ -139,14 +136,14 @@ std::string table_text(const std::vector<std::vector<std::string>>& rows, TableF
   for (auto& row : cells) {
     for (size_t i = 0; i < row.size(); ++i) {
       row[i] = markdown ? escaped(row[i], format) : printable(row[i]);
-      widths[i] = std::max(widths[i], text_width(row[i]));
+      widths[i] = std::max(widths[i], columns_of(row[i]));
     }
   }
   std::string text;
   for (size_t r = 0; r < cells.size(); ++r) {
     std::string line;
     for (size_t i = 0; i < cells[r].size(); ++i) {
-      const std::string blanks(widths[i] - text_width(cells[r][i]), ' ');
+      const std::string blanks(widths[i] - columns_of(cells[r][i]), ' ');
       line += markdown ? (i ? " " : "| ") : i ? "  " : "";
       line += i < left ? cells[r][i] + blanks : blanks + cells[r][i];
       if (markdown) line += " |";

@@ -31,7 +31,4 @@ std::string spread_text(const MeanSd& over_runs, const MeasureKind& kind, int di
 std::string table_text(const std::vector<std::vector<std::string>>& rows, TableFormat format = TableFormat::kText,
                        size_t left = 1);
 
-// Characters of UTF-8 text.
-size_t text_width(const std::string& text);
-
 }  // namespace synpo

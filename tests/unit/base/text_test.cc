@@ -90,5 +90,22 @@ TEST(Text, WhatIsNoSlipOfThePenIsNotGuessed) {
   EXPECT_EQ(did_you_mean("bat", {"cat", "rat", "bar", "bag"}), "");
 }
 
+TEST(Text, ColumnsOnATerminal) {
+  EXPECT_EQ(columns_of("map10"), 5u);
+  EXPECT_EQ(columns_of("\u00e9"), 1u);
+  EXPECT_EQ(columns_of("e\u0301"), 1u);                   // the accent stands on the letter
+  EXPECT_EQ(columns_of("\u73af\u5883"), 4u);              // Chinese
+  EXPECT_EQ(columns_of("\U0001f34e"), 2u);                // an apple
+  EXPECT_EQ(columns_of("\u05e9\u05dc\u05d5\u05dd"), 4u);  // Hebrew
+  EXPECT_EQ(columns_of("\xff"), 1u);
+  EXPECT_EQ(columns_of(""), 0u);
+}
+
+TEST(Text, CountedNouns) {
+  EXPECT_EQ(counted(0, "step"), "0 steps");
+  EXPECT_EQ(counted(1, "new task"), "1 new task");
+  EXPECT_EQ(counted(2, "step"), "2 steps");
+}
+
 }  // namespace
 }  // namespace synpo

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <numeric>
 #include <string>
@@ -73,6 +75,39 @@ TEST(Terminal, BlocksShrinkToTheWidth) {
   EXPECT_EQ(second_line(16), "push 100 99   ");
   EXPECT_EQ(second_line(13), "push       ");
   EXPECT_EQ(second_line(4), "push    ");
+}
+
+// Environments named `env` and a number, tasks named `task` and a number.
+HeatTable named(const std::string& env, const std::string& task) {
+  Matrix m;
+  for (const char* e : {"1", "2"})
+    for (const char* t : {"7", "8"}) m.rows.push_back(matrix_row(env + e, task + t, true, 1, 1));
+  return pool_matrix(m);
+}
+
+TEST(Terminal, LongNamesAreShortenedSoThatTheyStayDifferent) {
+  const auto text = [&](const HeatTable& table, int width) {
+    return terminal_matrix(table, find_scheme("safe"), TerminalColour::kNone, width);
+  };
+  const HeatTable tasks = named("map", "put_the_first_thing_into_receptacle_");
+  EXPECT_NE(text(tasks, 0).find("\nput_the_first_thing_into_receptacle_7 100 100\n"), std::string::npos);
+  // 30 columns less two cells and a blank are 21.
+  EXPECT_NE(text(tasks, 30).find("\nput_the_fi..eptacle_7 100 100\nput_the_fi..eptacle_8 100 100\n"), std::string::npos)
+      << text(tasks, 30);
+  EXPECT_NE(text(tasks, 5).find("\nput_the..tacle_8 100 100\n"), std::string::npos) << text(tasks, 5);
+  // Names that are read downwards have twelve lines, and differ in the last.
+  HeatTable envs = named("map", "push");
+  envs.envs = {"environment_of_kind_a", "environment_of_kind_b"};
+  const std::string downwards = text(envs, 0);
+  EXPECT_EQ(std::count(downwards.begin(), downwards.begin() + ptrdiff_t(downwards.find("push7")), '\n'), 1 + 12);
+  EXPECT_NE(downwards.find("\n        a   b\npush7"), std::string::npos) << downwards;
+}
+
+TEST(Terminal, CharactersOfTwoColumnsAreAligned) {
+  // Two characters on four columns, and a letter with an accent on one.
+  const std::string text =
+      terminal_matrix(named("\u73af\u5883", "e\u0301te"), find_scheme("safe"), TerminalColour::kNone, 0);
+  EXPECT_NE(text.find("\n\u73af\u5883   1   2\ne\u0301te7 100 100\n"), std::string::npos) << text;
 }
 
 TEST(Terminal, Mazes) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "stats/report/text_table.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -45,12 +45,61 @@ TEST(TextCurves, PointsStandWhereTheyBelong) {
 TEST(TextCurves, BrailleHasEightDotsACell) {
   TextCurvesStyle style = small();
   style.braille = true;
-  const std::vector<std::string> lines = lines_of(text_curves({{"", {0, 1}, {1, 1}}, {"b", {0}, {0}}}, style));
+  style.x_low = style.y_low = 0;
+  style.x_high = style.y_high = 1;
   // A line along the upper edge, and a single dot in the lower left corner.
   std::string full;
   for (int i = 0; i < 12; ++i) full += "\u2809";
-  EXPECT_NE(lines[1].find(full), std::string::npos);
+  EXPECT_NE(lines_of(text_curves({{"", {0, 1}, {1, 1}}}, style))[1].find(full), std::string::npos);
+  const std::vector<std::string> lines = lines_of(text_curves({{"b", {0}, {0}}}, style));
   EXPECT_NE(lines[5].find("\u2502\u2840"), std::string::npos) << lines[5];
+}
+
+TEST(TextCurves, SeveralOfBrailleHaveMarksWhereThereIsNoColour) {
+  TextCurvesStyle style = small();
+  style.braille = true;
+  const std::vector<TextCurve> curves = {{"a", {0, 1}, {1, 1}}, {"b", {0, 1}, {0, 0}}};
+  const std::vector<std::string> lines = lines_of(text_curves(curves, style));
+  EXPECT_NE(lines[1].find("\u2809*\u2809"), std::string::npos) << lines[1];
+  EXPECT_NE(lines[5].find("o\u28c0"), std::string::npos) << lines[5];
+  EXPECT_EQ(lines.back(), "* a 1   o b 0");
+  style.colour = TerminalColour::kTrue;
+  EXPECT_EQ(text_curves(curves, style).find('*'), std::string::npos);
+}
+
+TEST(TextCurves, LabelsOfAnAxisDifferAndHaveAsManyDigitsAsOneAnother) {
+  TextCurvesStyle style = small();
+  style.rows = 20;
+  style.columns = 40;
+  const auto labels = [&](double low, double high) {
+    std::vector<std::string> all;
+    for (const std::string& line : lines_of(text_curves({{"", {0, 1}, {low, high}}}, style)))
+      if (const size_t bar = line.find(" |"); bar != std::string::npos && line.find_first_not_of(' ') < bar)
+        all.push_back(line.substr(line.find_first_not_of(' '), bar - line.find_first_not_of(' ')));
+    return all;
+  };
+  using Labels = std::vector<std::string>;
+  EXPECT_EQ(labels(0, 100), (Labels{"100", "75", "50", "25", "0"}));
+  EXPECT_EQ(labels(1.5922, 1.6217), (Labels{"1.622", "1.614", "1.607", "1.600", "1.592"}));
+  EXPECT_EQ(labels(-1, 1), (Labels{"1.0", "0.5", "0.0", "-0.5", "-1.0"}));
+  EXPECT_EQ(labels(1000000, 1000040), (Labels{"1.00004M", "1.00003M", "1.00002M", "1.00001M", "1.00000M"}));
+  EXPECT_EQ(labels(0, 20000), (Labels{"20k", "15k", "10k", "5k", "0"}));
+  EXPECT_EQ(labels(0, 4e-6), (Labels{"4e-06", "3e-06", "2e-06", "1e-06", "0"}));
+  // Ends of the axis across.
+  style.x_low = 1000000;
+  style.x_high = 1000040;
+  const std::string across = lines_of(text_curves({{"", {0, 1}, {0, 1}}}, style))[18];
+  EXPECT_EQ(across.substr(across.find('1')), "1M              x         1.00004M") << across;
+}
+
+TEST(TextCurves, LongNamesAreShortenedSoThatTheyAndTheirValuesStayDifferent) {
+  TextCurvesStyle style = small();
+  style.columns = 24;
+  const std::string stem = "a_long_name_of_a_run_with_the_seed_";
+  const std::vector<std::string> lines =
+      lines_of(text_curves({{stem + "1", {0}, {1}}, {stem + "2", {0}, {25}}}, style));
+  EXPECT_EQ(lines[lines.size() - 2], "* a_long_na..e_seed_1 1") << lines[lines.size() - 2];
+  EXPECT_EQ(lines.back(), "o a_long_na..e_seed_2 25");
 }
 
 TEST(TextCurves, NoLineIsWiderThanItsColumns) {
@@ -66,7 +115,7 @@ TEST(TextCurves, NoLineIsWiderThanItsColumns) {
       style.braille = braille;
       style.x_title = "updates";
       style.y_title = "a measure";
-      for (const std::string& line : lines_of(text_curves(curves, style))) EXPECT_LE(text_width(line), size_t(columns));
+      for (const std::string& line : lines_of(text_curves(curves, style))) EXPECT_LE(columns_of(line), size_t(columns));
     }
 }
 
