@@ -41,8 +41,10 @@ void choose_coarse_products() {
 }  // namespace
 
 void DeviceOptions::add_to(Options& options) {
-  options.call(0, "device", "DEVICE", "computes on cpu, or with LibTorch on torch-cpu, cuda or cuda:N [cpu]",
-               [this](const std::string& name) { device = parse_device(name); });
+  options
+      .call(0, "device", "DEVICE", "computes on cpu, or with LibTorch on torch-cpu, cuda or cuda:N [cpu]",
+            [this](const std::string& name) { device = parse_device(name); })
+      .suggest({"cpu", "torch-cpu", "cuda"});
   options.choice(0, "precision", "NAME", "of the products' factors: float32, bf16, or tf32 on a GPU", precision,
                  {"float32", "bf16", "tf32"});
 }

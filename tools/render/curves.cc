@@ -116,6 +116,7 @@ int curves(int argc, char** argv) {
       "Draws run logs as curves. Logs of one label are runs of one method: their mean, and a band around it.");
   options.choice('x', "across", "AXIS", "updates, states or minutes", x, {"updates", "states", "minutes"})
       .text('y', "up", "COLUMN", "success, reward, reward_loss, or any column of the log", y)
+      .suggest({"success", "reward", "reward_loss", "loss", "policy", "env", "task", "right_move", "right_pick"})
       .choice(0, "pairs", "WHICH", "seen, unseen or both; or training: those that it played itself", pairs,
               {"seen", "unseen", "both", "training"})
       .integer(0, "panels", "N", "1: seen dashed, unseen drawn through; 2: side by side; 0: 2 for several methods",

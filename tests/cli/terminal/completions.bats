@@ -58,6 +58,8 @@ completed() {
     [ "$(completed synpo-render heatmap --scheme p)" = purple-red ]
     [ "$(completed synpo-train -m m | tr '\n' ' ')" = "mlp modulenet mtl " ]
     [ "$(completed synpo-train --recipe '' | tr '\n' ' ')" = "fast paper " ]
+    [ "$(completed synpo-eval --device '' | tr '\n' ' ')" = "cpu cuda torch-cpu " ]
+    [ "$(completed synpo-render curves -y r | tr '\n' ' ')" = "reward reward_loss right_move right_pick " ]
     [ "$(completed synpo-gen-expert -w '' | tr '\n' ' ')" = "gridworld kitchen " ]
     [ "$(completed synpo-train --save '')" = files ]
     [ "$(completed synpo-eval '')" = files ]
