@@ -86,6 +86,10 @@ void PictureOptions::finish(Output& output, const Canvas& canvas) const {
 }
 
 void PictureOptions::say_missing(const Font& font) const {
+  // A viewer of SVG turns words around by itself.
+  if (font.mixes_directions() && format != "svg")
+    std::fprintf(stderr,
+                 "synpo-render: note: a text that mixes directions of writing is set in that of its first letter\n");
   constexpr size_t kMostNamed = 8;
   const size_t count = font.missing().size();
   if (count == 0) return;

@@ -13,6 +13,7 @@
 
 #include "base/error.h"
 #include "base/files/io.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -30,6 +31,19 @@ std::string font_path(const std::string& wish) {
     if (std::error_code error; std::filesystem::is_regular_file(path, error)) return path;
   fail(Exit::kNoInput, kNoFont,
        "cannot find the font DejaVuSans.ttf: install the Debian package fonts-dejavu-core, or name a TrueType file");
+}
+
+// Whether a letter is written in the other direction. Digits, marks and signs have none of their own.
+bool has_letters_against(const std::string& text, hb_direction_t direction) {
+  for (size_t i = 0; i < text.size();) {
+    const auto [length, code] = character_at(text, i);
+    const hb_script_t script = hb_unicode_script(hb_unicode_funcs_get_default(), code);
+    if (script != HB_SCRIPT_COMMON && script != HB_SCRIPT_INHERITED && script != HB_SCRIPT_UNKNOWN &&
+        hb_script_get_horizontal_direction(script) != direction)
+      return true;
+    i += std::max<size_t>(length, 1);
+  }
+  return false;
 }
 
 }  // namespace
@@ -82,6 +96,7 @@ const TextShape& Font::shape(const std::string& text) const {
   hb_buffer_set_language(buffer, hb_language_from_string("en", -1));  // not that of the user's locale
   hb_buffer_guess_segment_properties(buffer);
   shape.leftwards = HB_DIRECTION_IS_BACKWARD(hb_buffer_get_direction(buffer));
+  mixes_directions_ |= has_letters_against(text, hb_buffer_get_direction(buffer));
   hb_shape(face_->font, buffer, nullptr, 0);
   unsigned count = 0;
   const hb_glyph_info_t* const infos = hb_buffer_get_glyph_infos(buffer, &count);

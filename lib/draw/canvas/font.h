@@ -54,6 +54,8 @@ class Font {
   std::string family() const;
   // The characters of all texts so far that the font has no glyphs for, each once.
   const std::set<std::string>& missing() const { return missing_; }
+  // Whether a text so far had letters of both directions of writing: it is set in that of its first letter.
+  bool mixes_directions() const { return mixes_directions_; }
   // FreeType's, for what draws with it.
   std::shared_ptr<FT_FaceRec_> face() const;
 
@@ -63,6 +65,7 @@ class Font {
   std::shared_ptr<Face> face_;
   mutable std::map<std::string, TextShape> shapes_;
   mutable std::set<std::string> missing_;
+  mutable bool mixes_directions_ = false;
 };
 
 }  // namespace synpo

@@ -136,4 +136,12 @@ END
     [[ "$(svg_words a.svg)" == *'漢字'* ]]
     synpo-render map map3 --title 'Ein Titel: äöü' 2>err >a.png
     [ ! -s err ]
+    synpo-render map map3 --title 'שלום 7' 2>err >a.png
+    [ ! -s err ]
+    for title in 'title שלום' 'שלום title'; do
+        synpo-render map map3 --title "$title" 2>err >a.png
+        grep -qxF "synpo-render: note: a text that mixes directions of writing is set in that of its first letter" err
+        synpo-render map map3 --title "$title" --format svg 2>err >a.svg
+        [ ! -s err ]
+    done
 }
