@@ -1,9 +1,11 @@
 #include "draw/terminal/block_plans.h"
 
 #include <algorithm>
+#include <climits>
 #include <cstddef>
 
 #include "base/text.h"
+#include "draw/shortened.h"
 
 namespace synpo {
 namespace {
@@ -12,6 +14,18 @@ constexpr size_t kDefaultWidth = 80;
 
 // As wide as its plan, or its name where there is none.
 size_t width_of(const BlockPlan& plan) { return plan.rows > 0 ? 2 * size_t(plan.columns) : columns_of(plan.name); }
+
+// Their names, none wider than the narrowest plan.
+std::vector<std::string> names_of(const std::vector<BlockPlan>& plans) {
+  std::vector<std::string> names;
+  int room = INT_MAX;
+  for (const BlockPlan& plan : plans) {
+    names.push_back(plan.name);
+    if (plan.rows > 0) room = std::min(room, 2 * plan.columns);
+  }
+  return fitted_apart(
+      names, {.width_of = [](const std::string& text) { return int(columns_of(text)); }, .ellipsis = ".."}, room);
+}
 
 // A row, each stretch of one kind under one colour; blanks below the plan.
 std::string plan_row(const BlockPlan& plan, int row, TerminalColour colour) {
@@ -34,6 +48,7 @@ std::string plan_row(const BlockPlan& plan, int row, TerminalColour colour) {
 std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& style, TerminalColour colour,
                            int width) {
   const std::string between = "  ";
+  const std::vector<std::string> names = names_of(plans);
   std::string text = style.title.empty() ? "" : style.title + "\n\n";
   for (size_t first = 0, end; first < plans.size(); first = end) {
     size_t used = width_of(plans[first]);
@@ -45,10 +60,10 @@ std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& 
     }
     if (first > 0) text += '\n';
     for (size_t i = first; i < end; ++i) {
-      text += plans[i].name;
+      text += names[i];
       if (i + 1 < end)
-        text += std::string(
-            width_of(plans[i]) + between.size() - std::min(width_of(plans[i]), columns_of(plans[i].name)), ' ');
+        text +=
+            std::string(width_of(plans[i]) + between.size() - std::min(width_of(plans[i]), columns_of(names[i])), ' ');
     }
     text += '\n';
     for (int row = 0; row < rows; ++row) {

@@ -22,8 +22,8 @@ struct BlockPlan {
   std::function<Block(int row, int column)> block;
 };
 
-// The plans with their names. A row has as many as `width` columns hold (0: 80), at most `style.columns` where that is
-// not 0.
+// The plans with their names, shortened so that they stay different where they are wider than a plan. A row has as many
+// as `width` columns hold (0: 80), at most `style.columns` where that is not 0.
 std::string terminal_plans(const std::vector<BlockPlan>& plans, const MapStyle& style, TerminalColour colour,
                            int width);
 

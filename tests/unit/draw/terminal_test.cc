@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/cli/screen.h"
+#include "draw/terminal/block_plans.h"
 #include "draw/terminal/terminal.h"
 #include "draw/worlds/faces.h"
 #include "helpers/heat_tables.h"
@@ -108,6 +109,15 @@ TEST(Terminal, CharactersOfTwoColumnsAreAligned) {
   const std::string text =
       terminal_matrix(named("\u73af\u5883", "e\u0301te"), find_scheme("safe"), TerminalColour::kNone, 0);
   EXPECT_NE(text.find("\n\u73af\u5883   1   2\ne\u0301te7 100 100\n"), std::string::npos) << text;
+}
+
+TEST(Terminal, PlansStandBeneathTheirNames) {
+  std::vector<BlockPlan> plans;
+  for (const char* name : {"the_first_kitchen", "the_first_kitchens"})
+    plans.push_back({name, 1, 6, [](int, int) { return Block{{}, ' ', '#'}; }});
+  EXPECT_EQ(terminal_plans(plans, {}, TerminalColour::kNone, 80),
+            "the_f..tchen  the_f..chens\n"
+            "############  ############\n");
 }
 
 TEST(Terminal, Mazes) {
