@@ -114,6 +114,7 @@ int body(int argc, char** argv) {
       .flag(0, "describe", "print what the checkpoint says of itself, as JSON, and quit", describe)
       .quiet(quiet);
   checkpoint_path = one_file(options, "checkpoint", checkpoint_path, options.parse(argc, argv, 0, 1));
+  if (describe) options.alone("describe", {"checkpoint", "output", "quiet"});
   const bool for_training = starts == "training";
   if (for_training && record_path.empty()) fail(Exit::kUsage, "--starts training goes with --record");
   if (says_end && record_path.empty()) fail(Exit::kUsage, "--end goes with --record");

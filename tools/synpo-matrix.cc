@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/cli/options.h"
+#include "base/error.h"
 #include "base/files/io.h"
 #include "colour.h"
 #include "draw/colour.h"
@@ -44,7 +45,9 @@ int matrix_summary(int argc, char** argv) {
   options.flag(0, "tsv", "a table for machines", table).flag('q', "quiet", "no notes on stderr", quiet);
   colour.add_to(options);
   options.text('o', "output", "FILE", "where the summary goes", output_path);
-  const std::vector<GroupSummary> groups = summarise(read_matrices(options.parse(argc, argv, 0, kMostFiles)));
+  const std::vector<std::string> files = options.parse(argc, argv, 0, kMostFiles);
+  if (table && options.given("colour")) fail(Exit::kUsage, "--colour is for text, not for --tsv");
+  const std::vector<GroupSummary> groups = summarise(read_matrices(files));
   Output output(output_path);
   if (table)
     write_summary(output, groups);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
 #include "base/error.h"
@@ -148,6 +149,13 @@ bool natural_less(const std::string& a, const std::string& b) {
 std::string shortest(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+std::string extension_of(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](char c) { return char(std::tolower(uint8_t(c))); });
+  return extension;
 }
 
 std::string alternatives(const std::vector<std::string>& words) {

@@ -48,6 +48,9 @@ bool natural_less(const std::string& a, const std::string& b);
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
 
+// ".png" of the file's name "a.PNG"; "" of one that has none.
+std::string extension_of(const std::string& path);
+
 // "a, b or c", as a sentence names choices; "" for an empty list.
 std::string alternatives(const std::vector<std::string>& words);
 

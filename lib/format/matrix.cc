@@ -91,7 +91,7 @@ class RowReader {
     text(kPart, row.part);
     if (!row.part.empty() && row.part != "P" && row.part != "Q" && row.part != "rest")
       reader_.bad(at_[kPart], "P, Q, rest or nothing");
-    if (says(kTemperature)) row.temperature = reader_.real(at_[kTemperature]);
+    if (says(kTemperature)) row.temperature = reader_.real(at_[kTemperature]) + 0.0;  // -0 is 0: one run
     if (row.temperature.value_or(0) < 0) reader_.bad(at_[kTemperature], "a number, at least 0");
     text(kEnvHash, row.env_hash);
     for (int column : extra_) row.extra.push_back(reader_.field(column));

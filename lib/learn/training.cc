@@ -119,6 +119,8 @@ void Training::note_tested_start(Progress& progress) {
 }
 
 void Training::end() {
+  // A run that was done when it was resumed has read nothing, and needs no stream but to hear of its end.
+  if (!stream_ && (settings_.expect > 0 || settings_.expect_end)) begin();
   if (stream_) check_length();
 }
 

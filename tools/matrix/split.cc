@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -24,11 +25,11 @@ namespace {
 // Names of a world that this program does not know: those listed, or so many with numbers.
 std::vector<std::string> any_names(const std::string& option, const std::string& chosen, const std::string& stem) {
   if (chosen.empty()) fail(Exit::kUsage, option, " is needed with -w any: how many, or names with commas between");
-  if (chosen.find_first_not_of("0123456789") != std::string::npos) return split_names(chosen);
-  const size_t count = chosen.size() > 7 ? 0 : std::stoul(chosen);
-  if (count < 1 || count > 1000000) fail(Exit::kUsage, option, " ", chosen, ": expected 1 to 1000000, or names");
+  const std::optional<int64_t> count = count_of_names(chosen);
+  if (!count) return split_names(chosen);
+  if (*count < 1 || *count > 1000000) fail(Exit::kUsage, option, " ", chosen, ": expected 1 to 1000000, or names");
   std::vector<std::string> names;
-  for (size_t i = 1; i <= count; ++i) names.push_back(stem + std::to_string(i));
+  for (int64_t i = 1; i <= *count; ++i) names.push_back(stem + std::to_string(i));
   return names;
 }
 

@@ -13,6 +13,7 @@
 #include "base/files/folder.h"
 #include "base/files/io.h"
 #include "base/signals.h"
+#include "base/text.h"
 #include "draw/canvas/canvas.h"
 #include "draw/canvas/font.h"
 #include "draw/episode/episode_picture.h"
@@ -35,10 +36,12 @@ namespace {
 Trajectory read_trajectory(Input& input, int64_t line) {
   TrajectoryLines lines(input);
   std::string text;
-  for (int64_t before = 0; before < line; ++before)
+  while (input.line_number() < uint64_t(line))
     if (!lines.next(text))
-      fail(Exit::kData, input.name(), ": it ends after ", before, before == 1 ? " line" : " lines", ", before line ",
-           line);
+      fail(Exit::kData, input.name(), ": it ends after ", input.line_number(),
+           input.line_number() == 1 ? " line" : " lines", ", before line ", line);
+  if (input.line_number() > uint64_t(line))
+    fail(Exit::kData, input.name(), ": line ", line, ": found the end of a stream, expected a trajectory");
   try {
     return parse_trajectory(text, kStepLimit);
   } catch (const Error& error) {
@@ -122,18 +125,18 @@ int episode(int argc, char** argv) {
   picture.add_to(options, {"png", "pdf", "svg", "gif"});
   const auto operands = options.parse(argc, argv, 0, 1);
   const bool draws_films = !frames.empty() || !video.empty();
-  if (!picture.ansi && options.given("colour")) fail(Exit::kUsage, "--colour is for --ansi");
   if (picture.ansi && draws_films) fail(Exit::kUsage, "--ansi goes without --frames and --video");
   for (const char* option : {"output", "format"})
     if (draws_films && options.given(option))
       fail(Exit::kUsage, "--frames and --video take the place of the picture, but --", option, " is given");
-  if (picture.ansi && options.given("format")) fail(Exit::kUsage, "--format is for a picture, not for --ansi");
-  if (video.ends_with(".gif")) {
+  if (extension_of(video) == ".gif") {
     picture.output = std::exchange(video, "");
     picture.format = "gif";
   }
-  if (!picture.ansi) picture.settle(options);
+  picture.settle(options, {"strip"});
   const bool moves = picture.format == "gif";
+  if ((draws_films || moves) && options.given("strip"))
+    fail(Exit::kUsage, "--strip is for a picture of the whole episode, not for one of each moment");
   if (options.given("rate") && video.empty() && !moves) fail(Exit::kUsage, "--rate is for --video and for a GIF");
   style.scale = picture.scale;
   if (draws_films || moves) catch_stop_signals();
@@ -154,7 +157,9 @@ int episode(int argc, char** argv) {
          quoted(face->world().name()));
   const Film film = played(input, face->world(), trajectory);
   if (picture.ansi) {
-    finish(*output, face->film_text(film, picture.colour.of(*output)));
+    std::string text = face->film_text(film, picture.colour.of(*output));
+    if (!style.title.empty()) text.replace(0, text.find('\n'), style.title);  // the first line names the pair
+    finish(*output, text);
     return 0;
   }
   const Frame frame = [&](int moment) { return draw_episode_frame(*face, film, moment, style, *font); };

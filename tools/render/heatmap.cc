@@ -1,6 +1,7 @@
 // synpo-render heatmap: success matrices, one or several side by side.
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -96,7 +97,8 @@ int heatmap(int argc, char** argv) {
   PictureOptions picture;
   PanelChoice choice;
   std::string labels = "own";
-  HeatOrder tasks = HeatOrder::kPaper, envs = HeatOrder::kPaper;
+  HeatOrder order = HeatOrder::kPaper;
+  std::optional<HeatOrder> task_order, env_order;
   bool no_values = false;
   const std::vector<std::string> orders = {"paper", "given", "natural", "mean", "cluster"};
   Options options("synpo-render heatmap", "[OPTION]... [[LABEL=]MATRIX[,MATRIX]...]...",
@@ -104,11 +106,12 @@ int heatmap(int argc, char** argv) {
   options.choice(0, "panels", "WHAT", "a panel for each file, method or seed", choice.by, {"file", "method", "seed"})
       .text(0, "method", "NAME", "only the rows of this method", choice.method)
       .call(0, "order", "ORDER", "of tasks and environments: paper, given, natural, mean or cluster [paper]",
-            [&](const std::string& name) { tasks = envs = find_order(name); })
+            [&](const std::string& name) { order = find_order(name); })
       .suggest(orders)
-      .call(0, "task-order", "ORDER", "of tasks alone", [&](const std::string& name) { tasks = find_order(name); })
+      .call(0, "task-order", "ORDER", "of tasks alone", [&](const std::string& name) { task_order = find_order(name); })
       .suggest(orders)
-      .call(0, "env-order", "ORDER", "of environments alone", [&](const std::string& name) { envs = find_order(name); })
+      .call(0, "env-order", "ORDER", "of environments alone",
+            [&](const std::string& name) { env_order = find_order(name); })
       .suggest(orders)
       .flag(0, "margins", "the mean of each task and each environment", style.margins)
       .call(0, "scheme", "NAME", "safe, purple-red, blue-red or figure8 [safe]",
@@ -128,7 +131,8 @@ int heatmap(int argc, char** argv) {
   style.scale = picture.scale;
   Output output = picture.open();
   const auto read_figure = [&] {
-    HeatFigure figure = arrange(read_panels(files, choice), grid_task_names(), tasks, envs);
+    HeatFigure figure =
+        arrange(read_panels(files, choice), grid_task_names(), task_order.value_or(order), env_order.value_or(order));
     if (labels == "paper") name_as_paper(figure);
     return figure;
   };

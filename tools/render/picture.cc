@@ -1,9 +1,7 @@
 // What every command's picture has: its options, its format, and how it is written.
 #include <algorithm>
-#include <cctype>
-#include <cstdint>
+#include <cstddef>
 #include <cstdio>
-#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,14 +20,6 @@ namespace {
 
 // Lines of a PDF and an SVG lie on a grid about as fine as a printer's.
 constexpr double kPngScale = 2, kVectorScale = 4;
-
-// "png" of "a.PNG"; "" of a name that has none.
-std::string extension_of(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](char c) { return char(std::tolower(uint8_t(c))); });
-  return extension.empty() ? extension : extension.substr(1);
-}
 
 }  // namespace
 
@@ -56,7 +46,7 @@ void PictureOptions::settle(const Options& options, std::vector<const char*> not
   for (const char* option : not_ansi)
     if (ansi && options.given(option)) fail(Exit::kUsage, "--", option, " is for a picture, not for --ansi");
   if (ansi) return;
-  const std::string extension = extension_of(output);
+  const std::string ending = extension_of(output), extension = ending.substr(std::min<size_t>(1, ending.size()));
   const bool known = std::find(formats_.begin(), formats_.end(), extension) != formats_.end();
   if (format.empty() && !extension.empty() && !known) {
     std::vector<std::string> names;

@@ -163,6 +163,7 @@ Options& Options::real(char letter, const char* name, const char* arg, const std
               [&value, low, high](const std::string& text) {
                 if (!parse_whole(text, value) || !(value >= low && value <= high))
                   throw std::invalid_argument(concat("expected a number from ", shortest(low), " to ", shortest(high)));
+                value += 0.0;  // -0 is 0, also where it names a run
               })
       .shown_as(shortest(value));
 }
@@ -341,6 +342,12 @@ std::vector<std::string> Options::parse(int argc, char** argv, int least, int mo
 
 bool Options::given(const char* name) const {
   return std::any_of(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.name == name && e.given; });
+}
+
+void Options::alone(const char* name, const std::vector<std::string>& others) const {
+  for (const auto& [entry, argument] : given_)
+    if (entry->name != name && std::find(others.begin(), others.end(), entry->name) == others.end())
+      fail(Exit::kUsage, "--", name, " does not go with --", entry->name);
 }
 
 std::string one_file(const Options& options, const char* option, const std::string& path,

@@ -56,6 +56,8 @@ class Options {
   std::vector<std::string> parse(int argc, char** argv, int least = 0, int most = 0);
   // True when the option was given on the command line.
   bool given(const char* name) const;
+  // Throws kUsage where any option but `name` and these `others` was given.
+  void alone(const char* name, const std::vector<std::string>& others) const;
   // The tool and the options that were given, in their order, but for those named, as a shell reads them.
   std::string given_again(const std::vector<std::string>& without) const;
 

@@ -1,6 +1,7 @@
 #include "base/files/file_uses.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/error.h"
 
@@ -32,7 +33,10 @@ FileUses::FileUses() { uses = this; }
 FileUses::~FileUses() { uses = nullptr; }
 
 void use_as_input(const std::string& path, const FileIdentity& file) {
-  if (!uses || file.type != S_IFREG) return;
+  if (!uses) return;
+  if (path == "-" && std::exchange(uses->reads_stdin_, true))
+    fail(Exit::kUsage, "standard input can be read only once");
+  if (file.type != S_IFREG) return;
   for (const auto& output : uses->outputs_)
     if (output->file.is(file))
       fail(Exit::kUsage, "cannot read ", shown(path), ": an output goes there, to ", shown(output->path));

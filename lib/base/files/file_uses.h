@@ -40,11 +40,13 @@ class FileUses {
     std::string path;
     FileIdentity file;
   };
+  bool reads_stdin_ = false;
   std::vector<Use> inputs_;                          // of the whole command
   std::vector<std::shared_ptr<const Use>> outputs_;  // those that live
 };
 
-// A file is read, from here to the end of the command. `path` is as the user gave it.
+// A file is read, from here to the end of the command. `path` is as the user gave it; `-` can be read only once
+// (kUsage).
 void use_as_input(const std::string& path, const FileIdentity& file);
 
 // A file that is written, as long as this lives. `over` are paths, as they were given, of inputs and outputs that it

@@ -99,7 +99,7 @@ class WorldFace {
   virtual std::vector<KeyEntry> way_key(const Film& film, int cell) const;
   // Whether that is long and stands beside the plan, an entry a line, or beneath it.
   virtual bool key_beside() const;
-  // The path on a terminal, ending with what describe() says.
+  // The path on a terminal, beginning with a line of the pair's name and ending with what describe() says.
   virtual std::string film_text(const Film& film, TerminalColour colour) const;
 
   // Pictures of what the agent sees.

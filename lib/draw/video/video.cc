@@ -1,6 +1,5 @@
 #include "draw/video/video.h"
 
-#include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/videoio.hpp>
@@ -10,6 +9,7 @@
 #include "base/files/file_uses.h"
 #include "base/files/unfinished.h"
 #include "base/rgb.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -24,7 +24,7 @@ constexpr Format kFormats[] = {
 
 const Format& format_of(const std::string& path) {
   for (const Format& format : kFormats)
-    if (std::filesystem::path(path).extension() == format.extension) return format;
+    if (extension_of(path) == format.extension) return format;
   fail(Exit::kUsage, "cannot tell the format of the video '", path,
        "': expected a name that ends in .gif, .avi, .mp4 or .mkv");
 }

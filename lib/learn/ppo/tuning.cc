@@ -1,7 +1,11 @@
 #include "learn/ppo/tuning.h"
 
 #include <cmath>
+#include <cstdint>
+#include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/error.h"
 #include "format/run_log.h"
@@ -22,6 +26,12 @@ Model random_model(const TuningSettings& s, const World& world) {
   return fresh_model(s.method, network.shape(world), {s.seed, network.embedding_sd});
 }
 
+std::set<uint64_t> numbers_of(const World& world, const std::vector<EnvTask>& pairs) {
+  std::set<uint64_t> numbers;
+  for (const EnvTask& pair : pairs) numbers.insert(world.pair_number(pair));
+  return numbers;
+}
+
 }  // namespace
 
 Tuning::Tuning(const TuningSettings& s, const Options& given, Parallel& parallel)
@@ -35,14 +45,26 @@ Tuning::Tuning(const TuningSettings& s, const Options& given, Parallel& parallel
   else  // a run from random weights may hold its world, whatever it was drawn in
     world_ = world_of(from, s.random && !lies_in_files(from) ? "" : s.world);
   Model model = fresh ? random_model(s, *world_) : load_model(from, *world_);
-  if (!s.pairs.empty()) model.seen = read_seen_pairs(*world_, s.pairs);
+  if (!s.pairs.empty()) {
+    std::vector<EnvTask> pairs = read_seen_pairs(*world_, s.pairs);
+    // A resumed run keeps the checkpoint's order, from which its episodes are drawn.
+    if (!resumes)
+      model.seen = std::move(pairs);
+    else if (numbers_of(*world_, pairs) != numbers_of(*world_, model.seen))
+      fail(Exit::kData, s.pairs, ": found other pairs than those that the run in the checkpoint learns on");
+  }
   if (model.seen.empty()) fail(Exit::kData, kNoPairs, "no pair to learn on");
   compute_on(s.device, parallel, model);
   run_.emplace(*world_, parallel, std::move(model), ppo, s.seed);
-  if (resumes)
+  if (resumes) {
     run_->resume(from);
-  else if (fresh)
+    // The last rollout may have gone beyond the steps that were asked for.
+    if (steps_ <= run_->steps() - int64_t(ppo.lanes) * ppo.rollout)
+      fail(Exit::kUsage, "found ", steps_, " steps in all, expected at least the ", run_->steps(),
+           " that the checkpoint has");
+  } else if (fresh) {
     run_->measure_statistics(kStatisticsBatches);
+  }
   reported_steps_ = run_->steps();
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "base/cli/options.h"
 #include "base/error.h"
 #include "base/random.h"
 #include "base/text.h"
@@ -273,14 +274,22 @@ std::pair<std::string, std::string> split_pair_name(const std::string& text) {
   return {names[0], names[1]};
 }
 
+std::optional<int64_t> count_of_names(const std::string& chosen) {
+  const bool digits = chosen.find_first_not_of("0123456789") == std::string::npos;
+  try {
+    return parse_count(chosen);
+  } catch (const std::invalid_argument&) {
+    return digits ? std::optional(INT64_MAX) : std::nullopt;
+  }
+}
+
 std::vector<std::string> choose_names(const std::string& option, const std::string& chosen,
                                       const std::vector<std::string>& names) {
   if (chosen.empty()) return names;
-  if (chosen.find_first_not_of("0123456789") == std::string::npos) {
-    const size_t count = chosen.size() > 7 ? 0 : std::stoul(chosen);
-    if (count < 1 || count > names.size())
+  if (const std::optional<int64_t> count = count_of_names(chosen)) {
+    if (*count < 1 || *count > int64_t(names.size()))
       fail(Exit::kUsage, option, " ", chosen, ": expected 1 to ", names.size(), ", or names");
-    return {names.begin(), names.begin() + std::ptrdiff_t(count)};
+    return {names.begin(), names.begin() + std::ptrdiff_t(*count)};
   }
   std::vector<std::string> list = split_names(chosen);
   for (const std::string& name : list)

@@ -2,6 +2,7 @@
 // (supplement 5.4).
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +54,8 @@ std::vector<std::string> split_names(const std::string& list);
 // "ENV,TASK". Throws std::invalid_argument for another number of names.
 std::pair<std::string, std::string> split_pair_name(const std::string& text);
 
+// How many of the names are taken, where `chosen` is a count ("5", "2e1"); none where it is names.
+std::optional<int64_t> count_of_names(const std::string& chosen);
 // The names that the option `option` chooses among `names`: all of them (""), the first so many ("5"), or those listed
 // ("map1,map7"), in the order of the list. Throws kUsage for a name that is not among them.
 std::vector<std::string> choose_names(const std::string& option, const std::string& chosen,

@@ -1,0 +1,54 @@
+load ../common
+
+setup_file() {
+    make_inputs
+    synpo-gen-expert -p pairs.tsv -n 3 --end >ended.jsonl
+}
+setup() { set_up pairs.tsv e.jsonl m.tsv ended.jsonl; }
+
+@test "heatmap: --task-order and --env-order hold, wherever --order stands" {
+    synpo-matrix split -w any --envs 4 --tasks 4 | awk -F '\t' -v OFS='\t' '
+        NR == 1 { print $0, "episodes", "successes"; next } { print $0, 10, (NR * 7) % 11 }' >by-hand.tsv
+    for side in task env; do
+        synpo-render heatmap --order natural --$side-order mean by-hand.tsv >after.png
+        synpo-render heatmap --$side-order mean --order natural by-hand.tsv | cmp - after.png
+        synpo-render heatmap --order natural by-hand.tsv >without.png
+        ! cmp -s after.png without.png
+    done
+}
+
+@test "episode --ansi: the title is there, and options of the picture are refused" {
+    synpo-render episode --ansi --title 'An episode' e.jsonl >titled
+    [ "$(head -n 1 titled)" = 'An episode' ]
+    tail -n +2 titled | cmp - <(synpo-render episode --ansi e.jsonl | tail -n +2)
+    for option in "--scale 3" "--font nowhere" "--strip 3"; do
+        # shellcheck disable=SC2086
+        fails 64 synpo-render episode --ansi $option e.jsonl
+        says "${option%% *} is for a picture, not for --ansi"
+    done
+}
+
+@test "episode: films have no strip" {
+    for film in "--frames frames" "--video x.gif" "--video x.avi" "-o x.gif" "--format gif"; do
+        # shellcheck disable=SC2086
+        fails 64 synpo-render episode $film --strip 3 e.jsonl
+        says "--strip is for a picture of the whole episode"
+    done
+}
+
+@test "the end of a video's name is read in either case, as that of a picture is" {
+    for kind in gif avi; do
+        synpo-render episode --scale 0.5 --video "x.$kind" e.jsonl
+        synpo-render episode --scale 0.5 --video "x.${kind^^}" e.jsonl
+        cmp "x.$kind" "x.${kind^^}"
+    done
+}
+
+@test "episode --line: the line of the file, whatever stands in those before it" {
+    cat ended.jsonl e.jsonl >both.jsonl
+    synpo-render episode --ansi --line 5 both.jsonl | cmp - <(synpo-render episode --ansi e.jsonl)
+    fails 65 synpo-render episode --ansi --line 4 both.jsonl
+    says "both.jsonl: line 4: found the end of a stream, expected a trajectory"
+    fails 65 synpo-render episode --ansi --line 5 ended.jsonl
+    says "ended.jsonl: it ends after 4 lines, before line 5"
+}
