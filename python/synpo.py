@@ -21,6 +21,7 @@ The formats are described in synpo-matrix(5), synpo-log(5), synpo-trajectory(5),
 synpo-play(5). A file that is not as they say is refused with ValueError, which names it and the place.
 """
 import json
+import math
 import os
 import struct
 import subprocess
@@ -43,18 +44,61 @@ __all__ = ["read_matrix", "rates", "read_log", "read_trajectories", "Checkpoint"
 # --- tables ------------------------------------------------------------------------------------------------
 
 def _read_table(path):
-    """The header and the rows of a tab-separated table, as texts."""
-    with open(path, encoding="utf-8", newline="") as file:
-        lines = file.read().split("\n")
+    """The header and the columns of a tab-separated table, as texts, and what comes after the last LF."""
+    with open(path, "rb") as file:
+        data = file.read()
+    try:
+        lines = data.decode("utf-8").split("\n")
+    except UnicodeDecodeError as error:
+        number = data.count(b"\n", 0, error.start) + 1
+        raise ValueError(f"{path}: line {number}: found invalid UTF-8 ({error.reason})") from None
     if len(lines) < 2:
         raise ValueError(f"{path}: no header line")
-    cut_off = lines.pop()  # what comes after the last LF
+    cut_off = lines.pop()
+    if "\r" in lines[0]:
+        raise ValueError(f"{path}: line 1: ends in CR LF, expected LF alone")
     header = lines[0].split("\t")
+    if header[0].startswith("\ufeff"):
+        raise ValueError(f"{path}: line 1: found a byte order mark, expected none")
+    for name in header:
+        if header.count(name) > 1 or not name:
+            raise ValueError(f"{path}: line 1: found the column '{name}', expected names, each of them once")
     rows = [line.split("\t") for line in lines[1:]]
     for number, row in enumerate(rows, 2):
         if len(row) != len(header):
             raise ValueError(f"{path}: line {number}: found {len(row)} fields, expected {len(header)}")
-    return header, rows, cut_off
+        if "\r" in row[-1]:
+            raise ValueError(f"{path}: line {number}: ends in CR LF, expected LF alone")
+    return header, list(zip(*rows)) if rows else [()] * len(header), cut_off
+
+
+# Python reads more than the formats have: 1_000, blanks, digits of other scripts, infinity.
+_WHOLE, _REAL = set("-0123456789"), set("-+.0123456789eE")
+
+
+def _number(field, kind, characters):
+    number = kind(field) if characters.issuperset(field) and not field.startswith("+") else None
+    if number is None or not -2**63 <= number < 2**64 and kind is int or abs(number) == np.inf:
+        raise ValueError(field)
+    return number
+
+
+def _numbers(path, name, fields, kind, characters, missing, expected):
+    """The numbers of a column; NaN where a field is `missing`."""
+    if kind is int and characters.issuperset("".join(fields)) and "" not in fields:
+        try:
+            numbers = list(map(int, fields))
+            if -2**63 <= min(numbers, default=0) and max(numbers, default=0) < 2**64:
+                return numbers
+        except ValueError:
+            pass  # the line is found below
+    numbers = []
+    for number, field in enumerate(fields, 2):
+        try:
+            numbers.append(np.nan if field == missing else _number(field, kind, characters))
+        except ValueError:
+            raise ValueError(f"{path}: line {number}, column '{name}': found '{field}', expected {expected}") from None
+    return numbers
 
 
 _MATRIX_TEXTS = {"run", "world", "method", "env", "task", "part", "env_hash"}
@@ -66,26 +110,44 @@ _MATRIX_COUNTS = {"window", "seed", "updates", "eval_seed", "first_episode", "se
 def read_matrix(path):
     """A success matrix as {column: array}: counts are int64 (seeds of 2^63 and more uint64), reward and temperature
     float64 with NaN where the field is empty, all else text. pandas.DataFrame() takes it as it is."""
-    header, rows, cut_off = _read_table(path)
+    header, columns, cut_off = _read_table(path)
     if cut_off:
         raise ValueError(f"{path}: the last line has no end")
     for column in ("env", "task", "episodes", "successes"):
         if column not in header:
             raise ValueError(f"{path}: no column '{column}'")
     matrix = {}
-    for i, column in enumerate(header):
-        fields = [row[i] for row in rows]
-        try:
-            if column in _MATRIX_REALS:
-                matrix[column] = np.array([float(field) if field else np.nan for field in fields])
-            elif column in _MATRIX_COUNTS:
-                values = [int(field) for field in fields]
-                matrix[column] = np.array(values, np.uint64 if max(values, default=0) >= 2**63 else np.int64)
-            else:
-                matrix[column] = np.array(fields, dtype=object)
-        except ValueError as error:
-            raise ValueError(f"{path}: column '{column}': {error}") from None
+    for column, fields in zip(header, columns):
+        if column in _MATRIX_REALS:
+            matrix[column] = np.array(_numbers(path, column, fields, float, _REAL, "", "a number or nothing"), float)
+        elif column in _MATRIX_COUNTS:
+            values = _numbers(path, column, fields, int, _WHOLE, None, "a whole number")
+            matrix[column] = np.array(values, np.uint64 if max(values, default=0) >= 2**63 else np.int64)
+        else:
+            matrix[column] = np.array(fields, dtype=object)
+    _check_matrix(path, matrix)
     return matrix
+
+
+def _check_matrix(path, matrix):
+    def hold(column, wrong, expected):
+        if column in matrix and wrong.any():
+            row = int(wrong.argmax())
+            raise ValueError(f"{path}: line {row + 2}, column '{column}': found '{matrix[column][row]}', "
+                             f"expected {expected}")
+
+    for column in _MATRIX_COUNTS & matrix.keys():
+        hold(column, matrix[column] < 0, "at least 0")
+    for column in ("seen", "new"):
+        hold(column, matrix.get(column, np.zeros(0)) > 1, "0 or 1")
+    for column in ("env", "task"):
+        hold(column, matrix[column] == "", "a name")
+    hold("episodes", matrix["episodes"] < 1, "at least 1")
+    ends = sum((matrix[column].astype(float) for column in ("wrong", "timeouts") if column in matrix),
+               matrix["successes"].astype(float))
+    hold("successes", ends > matrix["episodes"], "with wrong picks and timeouts no more than the row's episodes")
+    with np.errstate(invalid="ignore"):
+        hold("temperature", matrix.get("temperature", np.zeros(0)) < 0, "at least 0")
 
 
 def rates(matrix):
@@ -103,20 +165,31 @@ def rates(matrix):
 def read_log(path):
     """A run log as {column: float64 array}, NaN where it has NA. Of an update that stands there twice, as after a
     resumption, the later row counts; a last row that is cut off is left out."""
-    header, rows, _ = _read_table(path)
-    try:
-        table = np.array([[np.nan if field == "NA" else float(field) for field in row] for row in rows])
-    except ValueError as error:
-        raise ValueError(f"{path}: {error}") from None
-    table = table.reshape(len(rows), len(header))
-    last = {update: row for row, update in enumerate(table[:, 0])}
-    return {column: table[sorted(last.values()), i] for i, column in enumerate(header)}
+    header, columns, _ = _read_table(path)
+    table = [np.array(_numbers(path, column, fields, float, _REAL, "NA", "a number or NA"), float)
+             for column, fields in zip(header, columns)]
+    last = {update: row for row, update in enumerate(table[0])}
+    return {column: values[sorted(last.values())] for column, values in zip(header, table)}
 
 
 # --- trajectories ------------------------------------------------------------------------------------------
 
 _TRAJECTORY_ARRAYS = {"actions": np.int64, "labels": np.int64, "rewards": np.float64, "scores": np.float32,
                       "probabilities": np.float64}
+_TRAJECTORY_FIELDS = ("world", "rules", "env", "task", "env_hash", "window", "seed", "episode", "start", "rewards",
+                      "success", "terminated", "truncated")
+
+
+def _no_number(text):
+    raise ValueError(f"found {text}, which is no number of JSON")
+
+
+def _parse_json(text):
+    """As json.loads(), but all that is not JSON is a ValueError: NaN, and what is nested too deep to read."""
+    try:
+        return json.loads(text, parse_constant=_no_number)
+    except RecursionError:
+        raise ValueError("nested too deep") from None
 
 
 def read_trajectories(source):
@@ -124,14 +197,14 @@ def read_trajectories(source):
     actions, labels, rewards and, where they were recorded, scores (float32) and probabilities. Labels are always
     there. A stream that says its end is refused there where something is missing."""
     if isinstance(source, (str, os.PathLike)):
-        with open(source, encoding="utf-8") as file:
+        with open(source, "rb") as file:
             yield from read_trajectories(file)
         return
     name = getattr(source, "name", "the stream")
     count, said = 0, None
     for number, line in enumerate(source, 1):
         try:
-            episode = json.loads(line)
+            episode = _parse_json(line.decode("utf-8") if isinstance(line, bytes) else line)
             if not isinstance(episode, dict) or episode.get("format") not in ("synpo-trajectory", "synpo-end"):
                 raise ValueError("not a synpo trajectory")
             if episode["version"] != 1:
@@ -143,10 +216,14 @@ def read_trajectories(source):
             episode.setdefault("labels", episode["actions"])
             for field, kind in _TRAJECTORY_ARRAYS.items():
                 if field in episode:
+                    if kind is np.int64 and not all(type(value) is int for value in episode[field]):
+                        raise ValueError(f"'{field}' has something else than whole numbers")
                     episode[field] = np.array(episode[field], kind)
                     if len(episode[field]) != len(episode["actions"]):
                         raise ValueError(f"'{field}' and 'actions' differ in length")
-        except (ValueError, TypeError) as error:
+            for field in _TRAJECTORY_FIELDS:
+                episode[field]
+        except (ValueError, TypeError, OverflowError) as error:
             raise ValueError(f"{name}: line {number}: {error}") from None
         except KeyError as error:
             raise ValueError(f"{name}: line {number}: no field {error}") from None
@@ -172,9 +249,11 @@ def read_safetensors(path):
             raise ValueError(f"{path}: not a safetensors file (header length {size})")
         text = file.read(size)
         try:
-            header = json.loads(text.decode("utf-8"))
+            header = _parse_json(text.decode("utf-8"))
             metadata = header.pop("__metadata__", {})
-        except (ValueError, AttributeError) as error:
+            if not all(isinstance(word, str) for word in metadata.values()):
+                raise ValueError("metadata that is no text")
+        except (ValueError, AttributeError, TypeError) as error:
             raise ValueError(f"{path}: not a safetensors file ({error})") from None
         data = file.read()
     tensors, at = {}, 0
@@ -183,10 +262,12 @@ def read_safetensors(path):
             begin, end = entry["data_offsets"]
             if entry["dtype"] not in _TYPES:
                 raise ValueError(f"{path}: tensor '{name}': type {entry['dtype']}")
-            if begin != at or end > len(data):
+            if begin != at or not begin <= end <= len(data):
                 raise ValueError(f"{path}: tensor '{name}': found bytes {begin} to {end}, expected {at} to {len(data)}")
-            if not isinstance(entry["shape"], list):
+            if not isinstance(entry["shape"], list) or not all(type(n) is int and n >= 0 for n in entry["shape"]):
                 raise TypeError(entry["shape"])
+            if math.prod(entry["shape"]) * np.dtype(_TYPES[entry["dtype"]]).itemsize != end - begin:
+                raise ValueError(f"{path}: tensor '{name}': found {end - begin} bytes for the shape {entry['shape']}")
             array = np.frombuffer(data[begin:end], _TYPES[entry["dtype"]]).reshape(entry["shape"])
             if entry["dtype"] == "BF16":
                 array = (array.astype("<u4") << 16).view("<f4")
@@ -212,9 +293,12 @@ class Checkpoint:
             for key in ("version", "rules", "window", "updates", "states", "seed"):
                 self.metadata[key] = int(metadata[key])
             for key in ("shape", "options", "tasks", "envs", "seen"):
-                self.metadata[key] = json.loads(metadata[key])
+                self.metadata[key] = _parse_json(metadata[key])
             self.envs = [env["name"] for env in self.metadata["envs"]]
             self.method, self.world = metadata["method"], metadata["world"]
+            self.seen = [(env, task) for env, task in self.metadata["seen"]]
+            if not all(type(self.metadata[key]) is kind for key, kind in (("shape", dict), ("tasks", list))):
+                raise ValueError("the shape or the tasks are malformed")
         except KeyError as error:
             raise ValueError(f"{path}: no metadata {error}") from None
         except (ValueError, TypeError) as error:
@@ -222,7 +306,6 @@ class Checkpoint:
         if self.metadata["version"] != 1:
             raise ValueError(f"{path}: version {metadata['version']}, this reader knows 1")
         self.tasks, self.shape, self.window = self.metadata["tasks"], self.metadata["shape"], self.metadata["window"]
-        self.seen = [tuple(pair) for pair in self.metadata["seen"]]
 
 
 def read_checkpoint(path):
@@ -534,13 +617,18 @@ class Server:
 
     def reset(self, place, env, task, seed=1, episode=0, starts="expert"):
         """An episode starts in a place; env and task are positions. Returns the observation."""
-        request = struct.pack("<cIIIQQB", b"r", place, env, task, seed, episode, _STARTS.index(starts))
+        try:
+            request = struct.pack("<cIIIQQB", b"r", place, env, task, seed, episode, _STARTS.index(starts))
+        except struct.error as error:
+            raise ValueError(f"found the place {place}, the pair {env}, {task}, the seed {seed} and the episode "
+                             f"{episode}: {error}") from None
         return self._observations(self._ask(request, self._bytes), 1)[0]
 
     def step(self, places, actions):
         """Steps in some places: observations [n, ...], rewards [n], success, terminated and truncated [n]."""
         places, actions = np.asarray(places, "<u4"), np.asarray(actions)
-        if actions.shape != places.shape or ((actions < 0) | (actions >= len(self.actions))).any():
+        whole = actions.size == 0 or actions.dtype.kind in "biu"
+        if actions.shape != places.shape or not whole or ((actions < 0) | (actions >= len(self.actions))).any():
             raise ValueError(f"found actions {actions}, expected {len(places)} from 0 to {len(self.actions) - 1}")
         n = len(places)
         request = struct.pack("<cI", b"s", n) + places.tobytes() + actions.astype(np.uint8).tobytes()
@@ -557,13 +645,17 @@ class Server:
         return np.frombuffer(answer, np.uint8).astype(np.int64)
 
     def close(self):
-        if self._process.poll() is None:
+        try:
             self._process.stdin.close()
-            self._process.wait()
+        except BrokenPipeError:
+            pass  # it has ended, and said why
         self._process.stdout.close()
+        self._process.wait()
         self._process.stderr.close()
 
     def _ask(self, request, size):
+        if self._process.stdin.closed:
+            raise RuntimeError(f"{self._process.args[0]} has ended")
         try:
             self._process.stdin.write(request)
             self._process.stdin.flush()
@@ -576,7 +668,8 @@ class Server:
 
     def _fail(self):
         message = self._process.stderr.read().decode(errors="replace").strip()
-        raise RuntimeError(message or f"{self._process.args[0]} ended with {self._process.wait()}")
+        self.close()
+        raise RuntimeError(message or f"{self._process.args[0]} ended with {self._process.returncode}")
 
     def _observations(self, data, count):
         if self._palette is None:
@@ -656,6 +749,8 @@ class Env(gymnasium.Env if gymnasium else object):
         if seed is not None or self._seed is None:
             self._seed, self._next = _seed(seed), 0
         episode = int(options.pop("episode", self._next))
+        if not 0 <= episode < 2**63:
+            raise ValueError(f"found the episode {episode}, expected one from 0 to 2^63 - 1")
         self._next = episode + 1
         env, task = _drawn_pair(self.server, self._seed, episode)
         env = _position(options.pop("env", env), self.server.envs)
@@ -688,7 +783,11 @@ class Env(gymnasium.Env if gymnasium else object):
 
 
 def _seed(seed):
-    return int(np.random.SeedSequence().generate_state(1, np.uint64)[0]) if seed is None else int(seed)
+    if seed is None:
+        return int(np.random.SeedSequence().generate_state(1, np.uint64)[0])
+    if not 0 <= int(seed) < 2**64:
+        raise ValueError(f"found the seed {seed}, expected one from 0 to 2^64 - 1")
+    return int(seed)
 
 
 def _drawn_pair(server, seed, episode):

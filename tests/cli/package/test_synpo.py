@@ -133,6 +133,62 @@ class Files(unittest.TestCase):
             self.refused("x: ", synpo.read_safetensors, written("x", struct.pack("<Q", len(text)) + text + bytes(4)))
 
 
+    def test_tables_are_read_no_more_freely_than_by_the_programs(self):
+        head = "env\ttask\tseen\tepisodes\tsuccesses\treward\ttemperature\n"
+        row = ["map1", "R-B", "1", "10", "5", "2.5", "0.5"]
+        with open(here("good.tsv"), "w") as file:
+            file.write(head + "\t".join(row) + "\n")
+        subprocess.check_output(["synpo-matrix", "merge", here("good.tsv")])
+        synpo.read_matrix(here("good.tsv"))
+        tables = {"\ufeff" + head: None, head.replace("\n", "\r\n"): None, head.replace("reward", "env"): None,
+                  head.replace("reward", ""): None}
+        tables = [table + "\t".join(row) + "\n" for table in tables]
+        for column, fields in {0: ["", "\udcff"], 2: ["2", "-1", "1.0", "\u0661"],
+                               3: ["0", "-1", "1_0", " 10", "+10", "1e1", "10" * 30, "0x10", "NaN", "4",
+                                   "\u0661\u0660"],
+                               4: ["-5", "11", ""], 5: ["nan", "inf", "1e999", "1_0", " 1", "+1", "0x1p3", "1,5"],
+                               6: ["-1", "nan", "-inf"]}.items():
+            tables += [head + "\t".join(row[:column] + [field] + row[column + 1:]) + "\n" for field in fields]
+        for table in tables:
+            path = written("bad.tsv", table.encode(errors="surrogateescape"))
+            self.refused(path + ": line ", synpo.read_matrix, path)
+            self.assertEqual(subprocess.run(["synpo-matrix", "merge", path], capture_output=True).returncode, 65, table)
+        for field in ("nan", "inf", "1_0", "+1", "", "1e999"):
+            self.refused("bad.log: line 3, column 'loss'", synpo.read_log,
+                         written("bad.log", f"update\tloss\n1\t2\n2\t{field}\n"))
+
+    def test_whatever_is_in_a_file_the_error_is_of_one_kind_and_names_it(self):
+        with open(here("synpo.jsonl")) as file:
+            line = json.loads(file.readline())
+        deep = "[" * 100000
+        for change in ({"actions": [10**30] * len(line["actions"])}, {"actions": [1.5] * len(line["actions"])},
+                       {"labels": [True] * len(line["actions"])}, {"rewards": [float("nan")] * len(line["actions"])},
+                       {"actions": 7}, {"scores": [[1], [1, 2]]}, {"version": 1.5}, {"success": ...}):
+            bad = {**line, **change}
+            if bad["success"] is ...:
+                del bad["success"]
+            path = written("x.jsonl", json.dumps(line) + "\n" + json.dumps(bad) + "\n")
+            self.refused("x.jsonl: line 2: ", list, synpo.read_trajectories(path))
+        for text in (deep, '{"a":' * 100000, b'{"format":"\xff"}',
+                     '{"format":"synpo-end","version":1,"trajectories":1e999}'):
+            self.refused("x.jsonl: line 1: ", list, synpo.read_trajectories(written("x.jsonl", text)))
+        tensor = {"dtype": "F32", "shape": [1], "data_offsets": [0, 4]}
+        for header in (deep, '{"a":' * 100000, "[]", {"a": 1}, {"a": tensor, "b": tensor},
+                       {"__metadata__": [], "a": tensor}, {"__metadata__": {"format": 1}, "a": tensor},
+                       {"a": {**tensor, "shape": [-1]}},
+                       {"a": {**tensor, "shape": [2**40, 2**40]}}, {"a": {**tensor, "shape": [2]}},
+                       {"a": {**tensor, "shape": [True]}}, {"a": {**tensor, "data_offsets": [4, 0]}},
+                       {"a": {**tensor, "data_offsets": [0, float("inf")]}}, {"a": {**tensor, "dtype": []}}):
+            text = (header if isinstance(header, str) else json.dumps(header)).encode()
+            path = written("x", struct.pack("<Q", len(text)) + text + bytes(4))
+            self.refused("x: ", synpo.read_safetensors, path)
+        metadata = synpo.read_safetensors(here("synpo.ckpt"))[0]
+        for key, value in (("seen", "5"), ("seen", "[[1]]"), ("shape", "[]"), ("tasks", '"R-B"'), ("envs", "{}x"),
+                           ("envs", deep), ("updates", "many"), ("options", "NaN")):
+            text = json.dumps({"__metadata__": {**metadata, key: value}}).encode()
+            self.refused("x: ", synpo.read_checkpoint, written("x", struct.pack("<Q", len(text)) + text))
+
+
 class Worlds(unittest.TestCase):
     def test_the_experts_episodes_are_played_again_from_the_same_starts(self):
         for world, name in (("gridworld", "e.jsonl"), ("kitchen", "k.jsonl")):
@@ -203,13 +259,24 @@ class Worlds(unittest.TestCase):
                                ({"starts": "x"}, "'x'")):
             with self.assertRaisesRegex(ValueError, words):
                 env.reset(options=options)
+        for seed in (-1, 2**64):
+            with self.assertRaisesRegex(ValueError, f"found the seed {seed}"):
+                env.reset(seed=seed)
+        with self.assertRaisesRegex(ValueError, "found the episode -1"):
+            env.reset(options={"episode": -1})
+        with self.assertRaisesRegex(ValueError, "found the place -1"):
+            env.server.reset(-1, 0, 0)
         env.reset(seed=1)
+        with self.assertRaisesRegex(ValueError, "found actions"):
+            env.server.step([0], [0.7])
         with self.assertRaises(ValueError):
             env.step(5)
         with self.assertRaisesRegex(RuntimeError, "synpo-gen-expert: .*no-such"):
             synpo.Env("gridworld:no-such")
         with self.assertRaisesRegex(RuntimeError, "no episode goes on in the place 1"):
             env.server.step([1], [0])
+        with self.assertRaisesRegex(RuntimeError, "synpo-gen-expert has ended"):
+            env.server.step([0], [0])
 
     def test_gymnasium_is_followed_where_it_is_there(self):
         env = synpo.Env()
