@@ -33,7 +33,7 @@ PPO=(-q --lanes 4 --rollout 8 --minibatches 2 --epochs 1 --value-warm-up 0)
 
 @test "ppo --resume: the same pairs in another order are the same run, others are refused, and so are fewer steps" {
     (head -n 1 pairs.tsv; tail -n +2 pairs.tsv | tac) >turned.tsv
-    ! cmp -s pairs.tsv turned.tsv
+    run ! cmp -s pairs.tsv turned.tsv
     synpo-finetune ppo "${PPO[@]}" --steps 128 --resume ppo.save >plain.ckpt
     synpo-finetune ppo "${PPO[@]}" --steps 128 --resume ppo.save -p turned.tsv | cmp - plain.ckpt
     # One more, which the run never played: its episodes in progress would do.

@@ -13,7 +13,7 @@ setup() { set_up pairs.tsv e.jsonl m.tsv ended.jsonl; }
         synpo-render heatmap --order natural --$side-order mean by-hand.tsv >after.png
         synpo-render heatmap --$side-order mean --order natural by-hand.tsv | cmp - after.png
         synpo-render heatmap --order natural by-hand.tsv >without.png
-        ! cmp -s after.png without.png
+        run ! cmp -s after.png without.png
     done
 }
 
