@@ -5,7 +5,7 @@ setup_file() { make_inputs; }
 # Lines "SHORT LONG ARGUMENT" of a --help text: - where there is no letter, or no argument. An option that is on or off
 # stands there with its first name.
 options_of() {
-    "$@" --help | sed -nE \
+    help_of "$@" | sed -nE \
         's/^ {2}(-[A-Za-z0-9]|   ),? +?--([a-z0-9-]+)(, --no-[a-z0-9-]+)?( ([^ ]+))?( .*)?$/\1|--\2|\5/p' |
         awk -F '|' '{ gsub(/ /, "", $1); print ($1 == "" ? "-" : $1), $2, ($3 == "" ? "-" : $3) }'
 }
@@ -17,7 +17,7 @@ options_of() {
     while read -r -a command; do
         options_of "${command[@]}" >options
         # Every line of --help that begins with an option has been read.
-        [ "$(wc -l <options)" -eq "$("${command[@]}" --help | grep -cE '^  (-[A-Za-z0-9]|   ),? *--')" ]
+        [ "$(wc -l <options)" -eq "$(help_of "${command[@]}" | grep -cE '^  (-[A-Za-z0-9]|   ),? *--')" ]
         while read -r short long argument; do
             [ "$argument" != - ] || continue
             fails 64 "${command[@]}" "$long" ''
@@ -51,7 +51,7 @@ options_of() {
     count=0
     while read -r -a command; do
         options_of "${command[@]}" >options
-        "${command[@]}" --help >help
+        help_of "${command[@]}" >help
         while read -r short long argument; do
             [ "$argument" = - ] || continue
             if grep -q -- "  $long, --no-${long#--}" help; then
