@@ -23,22 +23,17 @@ ASAN_FLAGS := $(SANITIZED) -fsanitize=address,undefined,float-cast-overflow \
               -fno-sanitize-recover=undefined,float-cast-overflow \
               $(call OF_TESTS,-fno-sanitize=undefined -fno-sanitize=float-cast-overflow)
 TSAN_FLAGS := $(SANITIZED) -fsanitize=thread $(call OF_TESTS)
-# A part of the unit tests on each processor.
-IN_PARTS = seq 0 $$(($$(nproc) - 1)) | GTEST_TOTAL_SHARDS=$$(nproc) xargs -P 0 -I{} \
-           env GTEST_SHARD_INDEX={} $(1)/unit-tests --gtest_brief=1
-ASAN_CLI := $(addprefix tests/cli/,broken.bats options.bats maps.bats matrix.bats files accidents/upstream.bats)
+ASAN_CLI := $(addprefix tests/cli/,broken.bats options.bats maps.bats matrix.bats files \
+            $(addprefix accidents/,numbers.bats upstream.bats))
 TSAN_CLI := $(addprefix tests/cli/,train.bats eval.bats finetune.bats)
 # Tests send SIGSEGV and the like themselves.
 asan: export ASAN_OPTIONS := handle_segv=0:handle_sigbus=0:handle_sigfpe=0
+# The ends of all options.
+asan: export ACCIDENTS := full
 asan:
 	$(MAKE) B=build-asan CXXFLAGS='$(ASAN_FLAGS)' all build-asan/unit-tests
-	$(call IN_PARTS,build-asan)
-	SYNPO_BUILD='$(CURDIR)/build-asan' bats --recursive $(ASAN_CLI)
-	ACCIDENTS=full SYNPO_BUILD='$(CURDIR)/build-asan' bats tests/cli/accidents/numbers.bats
-	@echo "asan: unit tests, $(ASAN_CLI) and the ends of all options passed"
+	CHECK_CLI='$(ASAN_CLI)' scripts/check build-asan
 
 tsan:
 	$(MAKE) B=build-tsan DRAW=no CXXFLAGS='$(TSAN_FLAGS)' all build-tsan/unit-tests
-	$(call IN_PARTS,build-tsan)
-	SYNPO_BUILD='$(CURDIR)/build-tsan' bats $(TSAN_CLI)
-	@echo "tsan: unit tests and $(TSAN_CLI) passed"
+	CHECK_CLI='$(TSAN_CLI)' scripts/check build-tsan

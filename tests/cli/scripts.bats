@@ -126,7 +126,10 @@ kernel() { echo "namespace synpo::$1 { $2 } ${3-}" | g++ -std=c++17 -x c++ -c -o
 check() {
     mkdir -p build/lib/kernel cli
     [ -e build/lib/kernel/target_plain.o ] || kernel plain 'int mine() { return 1; }'
-    printf '#!/bin/sh\n%s\n' "$1" >build/unit-tests
+    {   # of the parts the first has all tests
+        printf '#!/bin/sh\n[ "$GTEST_SHARD_INDEX" = 0 ] || {\n%s\n}\n' "$(gtest)"
+        printf '%s\n' "$1"
+    } >build/unit-tests
     chmod +x build/unit-tests
     printf '%s\n' "$2" | sed 's/^TEST/@test/' >cli/x.bats
     status=0
