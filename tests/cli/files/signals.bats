@@ -19,7 +19,7 @@ teardown() {
 ends_asleep() {
     local signal=$1 place=$2 i
     shift 2
-    for ((i = 0; i < 400; ++i)); do
+    for ((i = 0; i < 2400; ++i)); do
         grep -qE "$place" "/proc/$pid/wchan" 2>/dev/null && break
         [ "$i" -gt 60 ] && grep -q '^State:.S' "/proc/$pid/status" && break
         sleep 0.05
