@@ -13,6 +13,8 @@ TEST(Filter, EveryOptionNarrows) {
       {row("r1", 1, "e", "t", true, 1), row("r1", 1, "e", "u", false, 2), row("r2", 2, "f", "t", true, 3, 10, "mlp")});
   m.has_part = true;
   m.rows[1].part = "Q";
+  m.extra_columns = {"host"};
+  for (MatrixRow& r : m.rows) r.extra = {"n" + std::to_string(r.successes)};
   const auto left = [&](const RowFilter& filter) {
     std::string successes;
     for (const MatrixRow& r : filter_rows(m, filter).rows) successes += std::to_string(r.successes);
@@ -22,6 +24,8 @@ TEST(Filter, EveryOptionNarrows) {
   EXPECT_EQ(left(f), "123");
   f.envs = {"e"};
   EXPECT_EQ(left(f), "12");
+  EXPECT_EQ(filter_rows(m, f).extra_columns, m.extra_columns);
+  EXPECT_EQ(filter_rows(m, f).rows[1].extra, m.rows[1].extra);
   f.standings = {Standing::kUnseen};
   EXPECT_EQ(left(f), "2");
   f.inverted = true;

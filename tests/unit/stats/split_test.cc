@@ -249,6 +249,10 @@ TEST(Split, RefusesPlansThatCannotBeMet) {
   p.p_envs = 5;
   EXPECT_EQ(refused(p),
             "64 part P of 5 environments and 3 tasks, expected at least 1 and fewer than the 5 and 5 there are");
+  p.p_envs = 2;
+  p.p_tasks = 0;
+  EXPECT_EQ(refused(p),
+            "64 part P of 2 environments and 0 tasks, expected at least 1 and fewer than the 5 and 5 there are");
   p = plan(2, 2, 2);
   p.envs = {"e1", "e1"};
   EXPECT_EQ(refused(p), "64 the environment 'e1' is named twice");

@@ -39,6 +39,18 @@ TEST(Summary, OneRun) {
   EXPECT_EQ(summary_text(groups).find("+-"), std::string::npos) << "one run has no spread";
 }
 
+TEST(Summary, PaintsTheNamesOfItsLines) {
+  const auto groups = summarise(matrix({row("r1", "e", true, 0, 10, 8), row("r1", "f", false, 0, 10, 4)}));
+  const auto paint = [](const SubsetSummary&, const std::string& name) { return "<" + name + ">"; };
+  std::string painted = summary_text(groups, paint);
+  for (const char* name : {"seen", "unseen", "all"}) {
+    const size_t at = painted.find("\n<" + std::string(name) + ">");
+    ASSERT_NE(at, std::string::npos) << painted;
+    painted.replace(at, std::string(name).size() + 3, "\n" + std::string(name));
+  }
+  EXPECT_EQ(painted, summary_text(groups));
+}
+
 TEST(Summary, SeveralRuns) {
   const auto groups =
       summarise(matrix({row("r1", "e", true, 0, 10, 8, 2, 1, 1), row("r2", "e", true, 0, 10, 6, 4, 1, 1),
