@@ -63,6 +63,8 @@ TEST(Pool, PartsHaveMeansOfTheirOwn) {
   const HeatTable by_seen = pool_matrix(matrix), by_part = pool_matrix(matrix, "", true);
   ASSERT_EQ(by_seen.parts.size(), 3u);
   EXPECT_DOUBLE_EQ(by_seen.parts[1].rate(), 0.5);
+  EXPECT_FALSE(by_seen.by_part);
+  EXPECT_TRUE(by_part.by_part);
   ASSERT_EQ(by_part.groups.size(), 3u);
   EXPECT_EQ(by_part.groups[2].name, "rest");
 }

@@ -53,6 +53,16 @@ TEST(Merge, RefusesRunsThatDisagree) {
               merge_matrices({a, {"b.tsv", matrix({other})}});
             }),
             "65 b.tsv line 2: found method 'mlp', expected 'synpo' as in a.tsv line 2, a row of the same run");
+  const auto disagrees = [&](auto MatrixRow::*member, auto value) {
+    MatrixRow b = row("r1", "f", true, 0, 10, 5);
+    b.*member = value;
+    const std::string message = thrown([&] { merge_matrices({a, {"b.tsv", matrix({b})}}); });
+    return message.substr(0, message.find(", expected"));
+  };
+  EXPECT_EQ(disagrees(&MatrixRow::world, "kitchen"), "65 b.tsv line 2: found world 'kitchen'");
+  EXPECT_EQ(disagrees(&MatrixRow::window, 0), "65 b.tsv line 2: found window '0'");
+  EXPECT_EQ(disagrees(&MatrixRow::seed, 77), "65 b.tsv line 2: found seed '77'");
+  EXPECT_EQ(disagrees(&MatrixRow::updates, 77), "65 b.tsv line 2: found updates '77'");
   EXPECT_EQ(thrown([&] {
               merge_matrices({a, {"b.tsv", matrix({row("r1", "e", false, 10, 10, 5)})}});
             }),
@@ -73,6 +83,16 @@ TEST(Merge, UnitesUnknownColumns) {
   ASSERT_EQ(merged.rows.size(), 3u) << "e added up, f's rows differ";
   EXPECT_EQ(merged.rows[0].extra, (std::vector<std::string>{"h1", "n", ""}));
   EXPECT_EQ(merged.rows[2].extra, (std::vector<std::string>{"h1", "n", "m"}));
+}
+
+TEST(Merge, PartsOfAnySourceAreKept) {
+  Matrix a = matrix({row("r1", "e", true, 0, 10, 5)}), b = matrix({row("r1", "f", true, 0, 10, 5)});
+  EXPECT_FALSE(merge_matrices({{"a", a}, {"b", b}}).has_part);
+  b.has_part = true;
+  b.rows[0].part = "Q";
+  const Matrix merged = merge_matrices({{"a", a}, {"b", b}});
+  EXPECT_TRUE(merged.has_part);
+  EXPECT_EQ(merged.rows.at(1).part, "Q");
 }
 
 TEST(Merge, RunsOfOneTrainingAtOtherTemperaturesStayApart) {

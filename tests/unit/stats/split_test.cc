@@ -92,9 +92,15 @@ TEST(Split, SameSeedSameSplitOtherSeedAnother) {
 
 // The bytes of a seed are a promise: published splits are named by it.
 TEST(Split, SmallSplitStaysAsItIs) {
-  std::string picture;
-  for (const SplitPair& pair : split_pairs(plan(5, 5, 12, 1))) picture += pair.seen ? '1' : '0';
-  EXPECT_EQ(picture, "0010101110100111100001010");
+  const auto picture = [](const SplitPlan& plan) {
+    std::string text;
+    for (const SplitPair& pair : split_pairs(plan)) text += pair.seen ? '1' : '0';
+    return text;
+  };
+  SplitPlan p = plan(5, 5, 12, 1);
+  EXPECT_EQ(picture(p), "0010101110100111100001010");
+  p.cover = 0;
+  EXPECT_EQ(picture(p), "0011100101000111010011001");
 }
 
 TEST(Split, EveryCellGetsItsTurn) {
