@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/error.h"
 #include "helpers/table_helpers.h"
 
 namespace synpo {
@@ -36,6 +37,14 @@ TEST(Tsv, ReadsFieldsAndFindsColumns) {
     EXPECT_EQ(thrown([&] { reader.need("c"); }), "65 IN: line 1: no column 'c', found 'a', 'b'");
     return 0;
   });
+  for (const char* more : {"", "\ti"})
+    read_text(concat("a\tb\tc\td\te\tf\tg\th", more, "\n"), [&](Input& input) {
+      TsvReader reader(input);
+      EXPECT_EQ(
+          thrown([&] { reader.need("x"); }),
+          concat("65 IN: line 1: no column 'x', found 'a', 'b', 'c', 'd', 'e', 'f', 'g', 'h'", *more ? ", ..." : ""));
+      return 0;
+    });
 }
 
 TEST(Tsv, RefusesWhatIsNoTable) {
