@@ -26,6 +26,15 @@ TEST(Merge, AddsRowsThatFollowAndKeepsGaps) {
   EXPECT_EQ(merged.rows[3].run, "r2");
 }
 
+TEST(Merge, RewardsAreAddedExactlyWhereTheyAreHundredths) {
+  EXPECT_EQ(add_rewards(0.1, 0.2), 0.3);
+  EXPECT_EQ(add_rewards(-0.1, -0.2), -0.3);
+  EXPECT_EQ(add_rewards(0.125, 1), 1.125) << "no hundredths";
+  EXPECT_EQ(add_rewards(1, 0.125), 1.125);
+  EXPECT_EQ(add_rewards(1e14, 0.5), 1e14 + 0.5) << "too large to be counted in hundredths";
+  EXPECT_EQ(add_rewards(0.5, -1e14), 0.5 - 1e14);
+}
+
 TEST(Merge, RefusesToCountTwice) {
   const MatrixSource a{"a.tsv", matrix({row("r1", "x", true, 0, 10, 5), row("r1", "e", true, 0, 100, 5)})};
   EXPECT_EQ(thrown([&] {
