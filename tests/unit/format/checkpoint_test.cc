@@ -76,6 +76,7 @@ TEST(Checkpoint, DescribesItself) {
   EXPECT_EQ(description["envs"][1]["name"], "map2");
   EXPECT_EQ(description["weights_hash"], hex(small_checkpoint().weights_hash()));
   EXPECT_EQ(description["tensors"]["theta"], nlohmann::json::array({2}));
+  EXPECT_EQ(nlohmann::json::parse(Checkpoint().describe())["envs"], nlohmann::json::array());
 }
 
 TEST(Checkpoint, DescribesItselfWithoutWhatATerminalActsOn) {
@@ -145,6 +146,13 @@ std::string checkpoint_refused(const char* key, const std::string& value, bool e
   else
     file.metadata[key] = value;
   return thrown([&] { checkpoint_of(format_safetensors(file)); });
+}
+
+TEST(Checkpoint, RefusesCountsAtWhichARunCouldComeToTheEndOfTheType) {
+  for (const char* key : {"updates", "states"}) {
+    EXPECT_EQ(checkpoint_refused(key, "9007199254740992"), "nothing thrown");
+    EXPECT_TRUE(checkpoint_refused(key, "9007199254740993").starts_with("65 cannot read IN: metadata '")) << key;
+  }
 }
 
 TEST(Checkpoint, RefusesOtherMetadata) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -72,6 +73,29 @@ TEST(Matrix, EveryColumnComesBack) {
   EXPECT_EQ(written([&](Output& output) { write_matrix(output, matrix); }), kFull);
 }
 
+TEST(Matrix, AnyColumnMayComeFirst) {
+  const Matrix matrix = matrix_of(kFull);
+  const auto fields_of = [](const std::string& text) {
+    std::vector<std::vector<std::string>> lines(1);
+    for (size_t begin = 0, end; begin < text.size(); begin = end + 1) {
+      end = text.find_first_of("\t\n", begin);
+      lines.back().push_back(text.substr(begin, end - begin));
+      if (text[end] == '\n' && end + 1 < text.size()) lines.emplace_back();
+    }
+    return lines;
+  };
+  std::vector<std::vector<std::string>> lines = fields_of(kFull);
+  for (size_t turn = 0; turn < lines[0].size(); ++turn) {
+    std::string text;
+    for (std::vector<std::string>& fields : lines) {
+      std::rotate(fields.begin(), fields.begin() + 1, fields.end());
+      for (const std::string& field : fields) text += field + '\t';
+      text.back() = '\n';
+    }
+    EXPECT_EQ(written([&](Output& output) { write_matrix(output, matrix_of(text)); }), kFull) << text;
+  }
+}
+
 TEST(Matrix, ColumnsInAnyOrderAndMostMayBeMissing) {
   const Matrix matrix = matrix_of("successes\tcolour\tepisodes\ttask\tenv\n3\tred\t4\tt\te\n");
   const MatrixRow& row = matrix.rows.at(0);
@@ -82,6 +106,7 @@ TEST(Matrix, ColumnsInAnyOrderAndMostMayBeMissing) {
   EXPECT_FALSE(row.seen);
   EXPECT_FALSE(matrix.has_part);
   EXPECT_EQ(row.extra, std::vector<std::string>{"red"});
+  EXPECT_EQ(matrix_of("env\ttask\tepisodes\tsuccesses\tupdates\ne\tt\t4\t3\t0\n").rows.at(0).updates, 0);
 }
 
 std::string row_refused(const std::string& fields) {

@@ -30,9 +30,10 @@ TEST(RunLog, WritesARowAReport) {
     row.loss = 2.25;
     row.right[0] = 0.5;
     row.right[1] = std::nan("");
+    row.right[2] = 0.75;
     log.write(row);
     EXPECT_EQ(contents(folder.file("log"))
-                  .find("100\t51200\t2100\t1.5\t0\t0\t2.25\t0\t0\t0\t0\t0.5\tNA\t0\t0\tNA\tNA\tNA\tNA\n"),
+                  .find("100\t51200\t2100\t1.5\t0\t0\t2.25\t0\t0\t0\t0\t0.5\tNA\t0.75\t0\tNA\tNA\tNA\tNA\n"),
               contents(folder.file("log")).find('\n') + 1);
     row.evaluation = {0.25, -1, 0.125, -2};
     log.write(row);
@@ -92,6 +93,10 @@ TEST(ReadRunLog, TakesColumnsByNameAndNaAsNothing) {
   EXPECT_TRUE(std::isnan(log.columns[0][1]));
   EXPECT_TRUE(std::isnan(log.columns[1][0]));
   EXPECT_EQ(log.columns[1][1], 0.25);
+  const RunLogTable states_first = read_text("states\tpolicy\tupdate\n7\t2\t1\n", [](Input& input) {
+    return read_run_log(input, RunLogAxis::kStates, {"policy"});
+  });
+  EXPECT_EQ(states_first.x, std::vector<double>{7});
 }
 
 TEST(ReadRunLog, OfUpdatesDoneAgainTheLaterRowsCount) {

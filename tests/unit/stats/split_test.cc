@@ -212,6 +212,9 @@ TEST(Split, Quadrants) {
     EXPECT_EQ(int(in_q.pairs.size()), count["Q"]);
     for (int i = 1; i <= 10; ++i) EXPECT_GE(in_p.times.at("e" + std::to_string(i)), 4);
   }
+  SplitPlan odd = plan(5, 7, -1);
+  odd.setting = 3;
+  EXPECT_EQ(Seen(odd, "P").pairs.size(), 3u * 4u) << "the larger half";
 }
 
 std::string refused(SplitPlan p) {
