@@ -97,3 +97,16 @@ completed() {
     tmux -L synpo kill-server
     grep -q "^> synpo-matrix table --format markdown" screen || complain "$(cat screen)"
 }
+
+@test "fish: commands, help's too, and words" {
+    for tool in $WITH_COMMANDS; do
+        "$tool" --help | awk '/^  [a-z]/ { print $1 }' | sort >want
+        sed -nE "s/^complete -c $tool -n '__fish_seen_subcommand_from help' -f -a ([a-z]+) .*/\1/p" \
+            "$BATS_FILE_TMPDIR/$tool.fish" | sort | cmp - want
+    done
+    command -v fish >/dev/null || skip "no fish"
+    offered() { HOME=$PWD fish -c "source $BATS_FILE_TMPDIR/${1%% *}.fish; complete -C '$1'" | cut -f 1 | sort; }
+    offered "synpo-render help " | cmp - want
+    [ "$(offered "synpo-matrix su")" = summary ]
+    [ "$(offered "synpo-train -m m" | tr '\n' ' ')" = "mlp modulenet mtl " ]
+}
