@@ -19,6 +19,10 @@ namespace {
 constexpr char kEllipsis[] = "..";  // of names; every terminal has it
 constexpr size_t kLeastLabel = 16;  // columns that a task's name may have, however many environments there are
 
+Ruler by_columns() {
+  return {.width_of = [](const std::string& text) { return int(columns_of(text)); }, .ellipsis = kEllipsis};
+}
+
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
   return value ? value : "";
@@ -46,11 +50,11 @@ std::string right(const std::string& text, size_t width) {
   return taken < width ? std::string(width - taken, ' ') + text : text;
 }
 
-// "map" of map1, map2, map10; "" where that leaves more than `room` characters, or nothing, of a name.
-std::string common_stem(const std::vector<std::string>& names, size_t room) {
+// "map" of map1, map2, map10; "" where what that leaves of a name is nothing, or has no room in a cell.
+std::string common_stem(const std::vector<std::string>& names, size_t cell) {
   std::string stem = names[0].substr(0, names[0].find_first_of("0123456789"));
   for (const std::string& name : names)
-    if (!name.starts_with(stem) || name.size() == stem.size() || columns_of(name) - columns_of(stem) > room) return "";
+    if (!name.starts_with(stem) || name.size() == stem.size() || columns_of(name) - columns_of(stem) >= cell) return "";
   return stem;
 }
 
@@ -69,10 +73,10 @@ char split_mark(const HeatTable& table, int group) {
 // Names across: what they share in the corner and the rest above their columns, or else read downwards.
 std::string head(const HeatTable& table, size_t label, size_t cell) {
   constexpr int kMostLines = 12;
-  const std::string stem = cell < 2 ? "" : common_stem(table.envs, cell - 1);
+  const std::string stem = common_stem(table.envs, cell);
   std::string text;
   if (!stem.empty()) {
-    text = right(stem, label);
+    text = right(fitted(stem, by_columns(), int(label)), label);
     for (const std::string& env : table.envs) text += right(env.substr(stem.size()), cell);
     return text + '\n';
   }
@@ -131,11 +135,9 @@ std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, Termin
   size_t cell = 4;
   if (width > 0) {
     const size_t cells = 1 + cell * table.envs.size(), room = size_t(width) > cells ? size_t(width) - cells : 0;
-    const Ruler ruler = {.width_of = [](const std::string& name) { return int(columns_of(name)); },
-                         .ellipsis = kEllipsis};
-    table.tasks = fitted_apart(table.tasks, ruler, int(std::max(room, kLeastLabel)));
+    table.tasks = fitted_apart(table.tasks, by_columns(), int(std::max(room, kLeastLabel)));
   }
-  size_t label = 4;
+  size_t label = std::max<size_t>(4, std::min(kLeastLabel, columns_of(common_stem(table.envs, cell))));
   for (const std::string& task : table.tasks) label = std::max(label, columns_of(task));
   while (coloured && width > 0 && cell > 1 && label + 1 + cell * table.envs.size() > size_t(width)) --cell;
   std::string text = table.caption.empty() ? "" : table.caption + '\n';

@@ -96,6 +96,11 @@ TEST(Terminal, LongNamesAreShortenedSoThatTheyStayDifferent) {
   EXPECT_NE(text(tasks, 30).find("\nput_the_fi..eptacle_7 100 100\nput_the_fi..eptacle_8 100 100\n"), std::string::npos)
       << text(tasks, 30);
   EXPECT_NE(text(tasks, 5).find("\nput_the..tacle_8 100 100\n"), std::string::npos) << text(tasks, 5);
+  // What the environments' names share stands above those of the tasks, on no more than sixteen columns.
+  EXPECT_NE(
+      text(named("a_rather_long_maze_", "push"), 0).find("\na_rathe..g_maze_   1   2\npush7            100 100\n"),
+      std::string::npos)
+      << text(named("a_rather_long_maze_", "push"), 0);
   // Names that are read downwards have twelve lines, and differ in the last.
   HeatTable envs = named("map", "push");
   envs.envs = {"environment_of_kind_a", "environment_of_kind_b"};
