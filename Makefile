@@ -274,6 +274,7 @@ install: all completions $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
 	    from=$${file%%:*} to=$${file#*:} mode=644; \
 	    case $$to in bin/*) mode=755 ;; *.a | *.so) [ -e "$$from" ] || continue ;; esac; \
 	    install -D -m $$mode "$$from" "$(DESTDIR)$(PREFIX)/$$to"; done
+	@echo "The programs are in $(DESTDIR)$(PREFIX)/bin, their pages in $(DESTDIR)$(PREFIX)/share/man" $(ASIDE)
 
 # Folders go too where nothing else is in them.
 uninstall:

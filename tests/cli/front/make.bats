@@ -39,6 +39,7 @@ commit_all() {
     done
     echo plugin >build/libsynpo_torch.so
     make -o all "${built[@]}" install DESTDIR="$PWD/root" PREFIX=/opt/x >out
+    grep -qx "The programs are in $PWD/root/opt/x/bin, their pages in $PWD/root/opt/x/share/man" out
     [ -s root/opt/x/share/bash-completion/completions/synpo-train ]
     [ -x root/opt/x/bin/synpo-train ]
     [ -s root/opt/x/share/man/man7/synpo.7 ]
