@@ -112,12 +112,17 @@ std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow
   for (const PairRow& row : rows) {
     const EnvTask pair = {world.env_index(row.env), world.task_index(row.task)};
     const auto unknown = [&](const char* what, const std::string& name, const std::vector<std::string>& known) {
-      fail(Exit::kData, file, row.line > 0 ? concat(": line ", row.line) : "", ": found the ", what, " ", quoted(name),
-           ", expected one of the world ", quoted(world.name()), ", such as ", quoted(known.front()),
-           did_you_mean(name, known));
+      return concat(file, row.line > 0 ? concat(": line ", row.line) : "", ": found the ", what, " ", quoted(name),
+                    ", expected one of the world ", quoted(world.name()), ", such as ", quoted(known.front()));
     };
-    if (pair.env < 0) unknown("env", row.env, world.env_names());
-    if (pair.task < 0) unknown("task", row.task, world.task_names());
+    if (pair.env < 0) {
+      const std::string words = unknown("env", row.env, world.env_names()),
+                        guess = did_you_mean(row.env, world.env_names());
+      if (guess.empty()) fail(Exit::kData, kOtherWorld, words);
+      fail(Exit::kData, words, guess);
+    }
+    if (pair.task < 0)
+      fail(Exit::kData, unknown("task", row.task, world.task_names()), did_you_mean(row.task, world.task_names()));
     if (row.seen || !seen_only) pairs.push_back(pair);
   }
   return pairs;

@@ -50,7 +50,7 @@ struct EpisodeRecord {
 Trajectory to_trajectory(const World& world, const EpisodeRecord& record, uint64_t seed, int64_t number, int window);
 
 // Pairs by name to pairs by position; rows with seen = 0 are left out where `seen_only`. Throws kData for an unknown
-// name.
+// name (kOtherWorld for an environment that no other resembles).
 std::vector<EnvTask> resolve_pairs(const World& world, const std::vector<PairRow>& rows, bool seen_only,
                                    const std::string& file);
 

@@ -38,6 +38,15 @@ says_all() { [ "$(tail -n 1 "$BATS_TEST_TMPDIR/err")" = "$1" ] ||
     says_all "synpo-finetune: $why"
     fails 65 synpo-render episode <other.jsonl
     says_all "synpo-render: $why"
+    printf 'env\ttask\nFloorPlan1\tMug-Sink\n' >kitchen.tsv
+    why="kitchen.tsv: line 2: found the env 'FloorPlan1', expected one of the world 'gridworld', such as 'map1'"
+    fails 65 synpo-gen-expert -p kitchen.tsv -n 1
+    says_all "synpo-gen-expert: $why (other maps? see -w)"
+    fails 65 synpo-train "${TINY[@]}" -n 1 -p kitchen.tsv <e.jsonl
+    says_all "synpo-train: $why (other maps? see -w)"
+    # Its world is that of the checkpoint.
+    fails 65 synpo-eval -q -p kitchen.tsv <a.ckpt
+    says_all "synpo-eval: $why"
 }
 
 @test "a loss that is not finite: --lr" {
