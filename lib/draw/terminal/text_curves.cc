@@ -69,8 +69,8 @@ std::vector<std::string> tick_labels(const Range& range, int parts) {
   const bool as_it_is = size >= 1e-3 && size < 1e9;
   const char suffix = as_it_is && size >= 1e6 ? 'M' : as_it_is && size >= 1e4 ? 'k' : '\0';
   const double unit = suffix == 'M' ? 1e6 : suffix == 'k' ? 1e3 : 1;
-  // To about a tenth of a step.
-  const double wanted = as_it_is ? 0.5 - std::log10(step / unit) : 1.5 + std::log10(size / step);
+  // To a tenth of a step.
+  const double wanted = as_it_is ? 0.7 - std::log10(step / unit) : 1.7 + std::log10(size / step);
   const int digits = int(std::clamp(std::ceil(wanted), 0.0, 15.0));
   std::vector<std::string> labels;
   for (int i = 0; i <= parts; ++i) {

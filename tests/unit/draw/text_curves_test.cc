@@ -85,6 +85,9 @@ TEST(TextCurves, LabelsOfAnAxisDifferAndHaveAsManyDigitsAsOneAnother) {
   EXPECT_EQ(labels(1000000, 1000040), (Labels{"1.00004M", "1.00003M", "1.00002M", "1.00001M", "1.00000M"}));
   EXPECT_EQ(labels(0, 20000), (Labels{"20k", "15k", "10k", "5k", "0"}));
   EXPECT_EQ(labels(0, 4e-6), (Labels{"4e-06", "3e-06", "2e-06", "1e-06", "0"}));
+  style.rows = 9;  // room for the ends alone
+  EXPECT_EQ(labels(1.409, 1.752), (Labels{"1.75", "1.41"}));
+  style.rows = 20;
   // Ends of the axis across.
   style.x_low = 1000000;
   style.x_high = 1000040;
