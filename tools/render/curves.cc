@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -61,6 +62,21 @@ std::string text_of(const CurveSet& set, const std::string& note, const CurvesSt
       curves.push_back(std::move(curve));
     }
   return text_curves(curves, text);
+}
+
+// A run that stands twice under its label would count twice in the mean, and make its band narrower.
+void check_once(const std::vector<LabelledFiles>& logs) {
+  for (const LabelledFiles& method : logs) {
+    std::map<std::pair<dev_t, ino_t>, std::string> known;
+    for (const std::string& path : method.paths) {
+      struct stat status;
+      if (path == "-" || stat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
+      const auto [at, fresh] = known.try_emplace({status.st_dev, status.st_ino}, path);
+      if (!fresh)
+        fail(Exit::kUsage, "the log ", quoted(path), " stands twice under its label",
+             at->second == path ? "" : ", as " + quoted(at->second) + " too", ": a run counts once");
+    }
+  }
 }
 
 // The size and the time of a file's last change, and which file it is: it changes with what can be read there.
@@ -142,6 +158,7 @@ int curves(int argc, char** argv) {
   options.flag(0, "follow", "--ansi, drawn anew as the logs grow, until Ctrl-C", follows);
   picture.add_to(options);
   const std::vector<LabelledFiles> logs = labelled_files(options.parse(argc, argv, 0, 1000));
+  check_once(logs);
   picture.ansi |= follows;
   picture.settle(options, {"size", "mark", "band", "panels", "log-axis"});
   style.scale = picture.scale;

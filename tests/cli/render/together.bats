@@ -52,3 +52,17 @@ setup() { set_up pairs.tsv e.jsonl m.tsv ended.jsonl; }
     fails 65 synpo-render episode --ansi --line 5 ended.jsonl
     says "ended.jsonl: it ends after 4 lines, before line 5"
 }
+
+@test "curves: a run that stands twice under its label is refused, whatever its name" {
+    printf 'update\tseen_success\tunseen_success\n1\t0.5\t0.25\n2\t0.75\t0.5\n' >a.log
+    sed 's/0\.75/1/' a.log >b.log
+    ln -s a.log link.log
+    ln a.log hard.log
+    for logs in "a.log a.log" "S=a.log,b.log,a.log" "S=a.log S=a.log" "S= a.log b.log link.log" "S=a.log,hard.log"; do
+        # shellcheck disable=SC2086
+        fails 64 synpo-render curves -o x.png $logs
+        says "stands twice under its label"
+    done
+    says "the log 'hard.log' stands twice under its label, as 'a.log' too: a run counts once"
+    synpo-render curves -o x.png S=a.log,b.log T=a.log
+}
