@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <utility>
@@ -149,6 +150,14 @@ bool natural_less(const std::string& a, const std::string& b) {
 std::string shortest(double value) {
   char text[32];
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
+}
+
+std::string percent_text(double share) {
+  if (std::isnan(share)) return "-";
+  const double percent = share > 0 && share < 1 ? std::clamp(std::round(100 * share), 1.0, 99.0) : 100 * share;
+  char text[32];
+  std::snprintf(text, sizeof text, "%.0f %%", percent);
+  return text;
 }
 
 std::string extension_of(const std::string& path) {

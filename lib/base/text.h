@@ -48,6 +48,9 @@ bool natural_less(const std::string& a, const std::string& b);
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
 
+// A share in whole per cent, "83 %"; 0 % and 100 % only where it is just that, and "-" for NaN.
+std::string percent_text(double share);
+
 // ".png" of the file's name "a.PNG"; "" of one that has none.
 std::string extension_of(const std::string& path);
 

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "base/text.h"
 #include "play/episode.h"
 #include "play/model.h"
 #include "play/world_factory.h"
@@ -13,12 +14,6 @@ namespace synpo {
 namespace {
 
 constexpr int64_t kUnknown = kMostUpdates + 1;  // total of a run whose limit in time has not been told in updates
-
-std::string percent(double part) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.0f %%", 100 * part);
-  return std::isnan(part) ? "-" : text;
-}
 
 // Updates that do not depend on the total: those of the warm-up, all where nothing moves, else the first.
 int64_t updates_to_time(const ImitationOptions& options) {
@@ -130,13 +125,13 @@ std::string Training::report(const Report& report) {
   row.states_per_s /= report.interval_s;
   if (report.evaluate_episodes > 0) {
     row.evaluation = run_->evaluate_sample(report.evaluate_episodes);
-    report.progress.say(concat("update ", row.update, ": success ", percent(row.evaluation->seen_success), " seen, ",
-                               percent(row.evaluation->unseen_success), " unseen"));
+    report.progress.say(concat("update ", row.update, ": success ", percent_text(row.evaluation->seen_success),
+                               " seen, ", percent_text(row.evaluation->unseen_success), " unseen"));
   }
   report.log.write(run_log_values(row));
   return concat("loss ", std::to_string(row.loss).substr(0, 5), ", ", short_count(row.states_per_s),
-                " states/s, right: move ", percent(row.right[0]), ", pick ", percent(row.right[1]), ", walk on ",
-                percent(row.right[2]), ", start ", percent(row.right[3]));
+                " states/s, right: move ", percent_text(row.right[0]), ", pick ", percent_text(row.right[1]),
+                ", walk on ", percent_text(row.right[2]), ", start ", percent_text(row.right[3]));
 }
 
 }  // namespace synpo

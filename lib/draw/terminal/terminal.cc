@@ -159,7 +159,7 @@ std::string terminal_matrix(const HeatTable& named, const Scheme& scheme, Termin
         line += std::string(cell - (coloured ? 0 : 1), ' ') + (coloured ? "" : " ");
         continue;
       }
-      const std::string rate = percent(at.rate(), 0);
+      const std::string rate = std::to_string(whole_percent(at.successes, at.episodes));
       if (coloured)
         line += ground_code(ramp_colour(group_ramp(table, at.group, scheme), at.rate()), colour) +
                 right(cell > 2 ? rate : "", cell) + kPlainCode;

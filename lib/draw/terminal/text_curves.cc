@@ -181,7 +181,10 @@ std::vector<std::string> legend(const std::vector<TextCurve>& curves, const Text
   size_t longest = 0, taken = 0;
   for (const TextCurve& curve : curves) {
     names.push_back(printable(curve.name));
-    values.push_back(curve.y.empty() ? "no value" : number(curve.y.back()) + (style.percent ? " %" : ""));
+    const double last = curve.y.empty() ? NAN : curve.y.back();
+    // 100 % is all, and no rounding.
+    const double shown = style.percent && last < 100 ? std::min(last, 99.9) : last;
+    values.push_back(curve.y.empty() ? "no value" : number(shown) + (style.percent ? " %" : ""));
     longest = std::max(longest, values.back().size());
   }
   names = fitted_apart(names, ruler_of(style), std::max(kLeastName, style.columns - 3 - int(longest)));

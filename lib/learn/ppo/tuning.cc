@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/error.h"
+#include "base/text.h"
 #include "format/run_log.h"
 #include "learn/recipe.h"
 #include "nn/buffer.h"
@@ -94,7 +95,7 @@ std::string Tuning::report(const Report& report) {
                     r.entropy, r.kl, r.clip_fraction, r.explained_variance, e.seen_success, e.seen_reward,
                     e.unseen_success, e.unseen_reward});
   const std::string speed = short_count(rate) + " steps/s";
-  return n > 0 ? concat("success ", std::lround(100 * r.finished.successes / n), " %, ", speed) : speed;
+  return n > 0 ? concat("success ", percent_text(r.finished.successes / n), ", ", speed) : speed;
 }
 
 }  // namespace synpo

@@ -47,10 +47,14 @@ std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTabl
   return out;
 }
 
-std::string hundredths_text(double percent, bool some, bool not_all) {
+int64_t hundredths_of(double percent, bool some, bool not_all) {
   int64_t hundredths = std::llround(percent);
   if (some) hundredths = std::max<int64_t>(hundredths, 1);
   if (not_all) hundredths = std::min<int64_t>(hundredths, 99);
+  return hundredths;
+}
+
+std::string hundredths_text(int64_t hundredths) {
   char text[16];
   std::snprintf(text, sizeof text, "%d.%02d", int(hundredths / 100), int(hundredths % 100));
   return text;
@@ -157,13 +161,17 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
   return table;
 }
 
+int64_t whole_percent(int64_t successes, int64_t episodes) {
+  return hundredths_of(100.0 * double(successes) / double(episodes), successes > 0, successes < episodes);
+}
+
 std::string rate_text(int64_t successes, int64_t episodes) {
-  return hundredths_text(100.0 * double(successes) / double(episodes), successes > 0, successes < episodes);
+  return hundredths_text(whole_percent(successes, episodes));
 }
 
 std::string rate_text(const HeatMean& mean) {
   if (mean.each >= 0) return rate_text(mean.successes, mean.episodes);
-  return hundredths_text(100.0 * mean.mean(), mean.successes > 0, mean.successes < mean.episodes);
+  return hundredths_text(hundredths_of(100.0 * mean.mean(), mean.successes > 0, mean.successes < mean.episodes));
 }
 
 }  // namespace synpo

@@ -97,6 +97,8 @@ struct HeatMargin {
 };
 std::vector<HeatMargin> margins_of(const HeatTable& table);
 
+// In per cent, as in the hundredths of rate_text(): 83, and 100 and 0 only where all or none succeeded.
+int64_t whole_percent(int64_t successes, int64_t episodes);
 // "0.83"; 1.00 and 0.00 only where all or none succeeded.
 std::string rate_text(int64_t successes, int64_t episodes);
 std::string rate_text(const HeatMean& mean);

@@ -66,3 +66,17 @@ setup() { set_up pairs.tsv e.jsonl m.tsv ended.jsonl; }
     says "the log 'hard.log' stands twice under its label, as 'a.log' too: a run counts once"
     synpo-render curves -o x.png S=a.log,b.log T=a.log
 }
+
+@test "a rate is the same in the terminal as in the picture, halves too, and 100 is all" {
+    awk 'BEGIN { OFS = "\t"; print "env", "task", "seen", "episodes", "successes"
+        for (k = 0; k <= 8; ++k) print "env" k, "t", 1, 8, k
+        print "env9", "t", 1, 1000, 999; print "env10", "t", 1, 1000, 1 }' >by-hand.tsv
+    synpo-matrix show by-hand.tsv | awk '$1 == "t" { for (i = 2; i <= NF; ++i) print $i }' >shown
+    printf '%s\n' 0 13 25 38 50 63 75 88 100 99 1 | cmp - shown
+    synpo-render heatmap --cell 30 --format svg by-hand.tsv | grep -o 'anchor="middle">[01]\.[0-9][0-9]<' |
+        tr -dc '01.23456789\n' | awk '{ print 100 * $1 }' | cmp - shown
+    printf 'update\tseen_success\tunseen_success\n1\t0.5\t0.5\n2\t0.9999\t1\n' >run.log
+    synpo-render curves --ansi --colour never run.log | tail -n 1 >legend
+    grep -q 'unseen 100 %' legend
+    grep -q ' seen 99.9 %' legend
+}

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -108,4 +109,13 @@ TEST(Text, CountedNouns) {
 }
 
 }  // namespace
+TEST(PercentText, IsAllOrNothingOnlyWhereItIsJustThat) {
+  EXPECT_EQ(percent_text(0), "0 %");
+  EXPECT_EQ(percent_text(1), "100 %");
+  EXPECT_EQ(percent_text(0.001), "1 %");
+  EXPECT_EQ(percent_text(0.999), "99 %");
+  EXPECT_EQ(percent_text(0.625), "63 %");
+  EXPECT_EQ(percent_text(std::nan("")), "-");
+}
+
 }  // namespace synpo
