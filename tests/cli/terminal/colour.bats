@@ -45,6 +45,8 @@ has_colour() { grep -q "$(printf '\033\\[38;5;')" "$1"; }
     COLORTERM=truecolor synpo-matrix summary --colour always hand.tsv >true
     grep -q "$(printf '^\033\\[38;5;231;48;2;[0-9;]*mseen\033\\[0m  ')" true
     grep -q "$(printf '^\033\\[38;5;16;48;2;[0-9;]*munseen\033\\[0m')" true
-    synpo-matrix summary --tsv --colour always hand.tsv >table
+    synpo-matrix summary --tsv hand.tsv >table
+    run -0 on_terminal "stty cols 400; synpo-matrix summary --tsv hand.tsv"
+    cmp "$BATS_TEST_TMPDIR/err" table
     run ! has_colour table
 }
