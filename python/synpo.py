@@ -322,17 +322,23 @@ if torch is not None:
     from torch import nn
     from torch.nn import functional as F
 
+    # Modules are made without memory, which they are given when the file's tensors are known to have their shapes.
+    _UNMADE = {"device": "meta"}
+
+    def _unmade(*shape):
+        return nn.Parameter(torch.zeros(*shape, **_UNMADE))
+
     class _Block(nn.Module):
         def __init__(self, inputs, outputs, stride, first):
             super().__init__()
-            self.conv1 = nn.Conv2d(inputs, outputs, 3, stride, 1, bias=False)
-            self.norm1 = nn.BatchNorm2d(outputs)
-            self.conv2 = nn.Conv2d(outputs, outputs, 3, 1, 1, bias=False)
-            self.norm2 = nn.BatchNorm2d(outputs)
+            self.conv1 = nn.Conv2d(inputs, outputs, 3, stride, 1, bias=False, **_UNMADE)
+            self.norm1 = nn.BatchNorm2d(outputs, **_UNMADE)
+            self.conv2 = nn.Conv2d(outputs, outputs, 3, 1, 1, bias=False, **_UNMADE)
+            self.norm2 = nn.BatchNorm2d(outputs, **_UNMADE)
             self.first = first
             if first:
-                self.shortcut = nn.Conv2d(inputs, outputs, 1, stride, bias=False)
-                self.shortcut_norm = nn.BatchNorm2d(outputs)
+                self.shortcut = nn.Conv2d(inputs, outputs, 1, stride, bias=False, **_UNMADE)
+                self.shortcut_norm = nn.BatchNorm2d(outputs, **_UNMADE)
 
         def forward(self, x):
             y = self.norm2(self.conv2(F.relu(self.norm1(self.conv1(x)))))
@@ -349,12 +355,12 @@ if torch is not None:
                 self.add_module(f"stage{s}", nn.ModuleDict({"block1": _Block(inputs, outputs, stride, True),
                                                             "block2": _Block(outputs, outputs, 1, False)}))
                 inputs = outputs
-            self.fc = nn.Linear(4 * inputs, shape["feature"])
+            self.fc = nn.Linear(4 * inputs, shape["feature"], **_UNMADE)
             self.normalises = bool(shape["normalise_input"])
             if self.normalises:
                 self.input = nn.Module()
-                self.input.register_buffer("mean", torch.zeros(3 * HISTORY))
-                self.input.register_buffer("variance", torch.ones(3 * HISTORY))
+                self.input.register_buffer("mean", torch.zeros(3 * HISTORY, **_UNMADE))
+                self.input.register_buffer("variance", torch.ones(3 * HISTORY, **_UNMADE))
 
         def forward(self, x):
             x = x.to(self.fc.weight.dtype).permute(0, 3, 1, 2)
@@ -373,9 +379,9 @@ if torch is not None:
         def __init__(self, shape):
             super().__init__()
             self.view = shape["view"]
-            self.conv1 = nn.Conv1d(shape["view"], shape["view_channels"], 3, 2, 1)
-            self.conv2 = nn.Conv1d(shape["view_channels"], shape["view_channels"], 3, 2, 1)
-            self.object = nn.Parameter(torch.zeros(shape["objects"], shape["object_embedding"]))
+            self.conv1 = nn.Conv1d(shape["view"], shape["view_channels"], 3, 2, 1, **_UNMADE)
+            self.conv2 = nn.Conv1d(shape["view_channels"], shape["view_channels"], 3, 2, 1, **_UNMADE)
+            self.object = _unmade(shape["objects"], shape["object_embedding"])
             self.fc = _Mlp(shape["view_channels"] + shape["object_embedding"], shape["view_hidden"], shape["feature"])
 
         def forward(self, x):
@@ -387,8 +393,8 @@ if torch is not None:
     class _Mlp(nn.Module):
         def __init__(self, inputs, hidden, outputs):
             super().__init__()
-            self.hidden = nn.Linear(inputs, hidden)
-            self.out = nn.Linear(hidden, outputs)
+            self.hidden = nn.Linear(inputs, hidden, **_UNMADE)
+            self.out = nn.Linear(hidden, outputs, **_UNMADE)
 
         def forward(self, x):
             return self.out(F.relu(self.hidden(x)))
@@ -402,12 +408,23 @@ if torch is not None:
             super().__init__()
             shape = self.shape = checkpoint.shape
             self.method, self.envs, self.tasks = checkpoint.method, checkpoint.envs, checkpoint.tasks
-            self.encoder = (_Features if "view" in shape else _Pictures)(shape)
-            if self.method != "modulenet":
-                names = ["task"] if self.method == "mtl" else ["env", "task"]
-                self.embedding = nn.ParameterDict(
-                    {name: nn.Parameter(torch.zeros(shape[name + "s"], shape["embedding"])) for name in names})
-            self._make_head(shape)
+            for name, size in shape.items():
+                if type(size) is not int or not 0 <= size < 2**24:
+                    raise ValueError(f"{checkpoint.path}: shape: found '{name}' {size}, expected 0 to {2**24 - 1}")
+            if (shape.get("envs"), shape.get("tasks")) != (len(self.envs), len(self.tasks)):
+                raise ValueError(f"{checkpoint.path}: the shape is of other environments or tasks than the world")
+            try:
+                self.normalises = bool(shape["normalise_embeddings"])
+                self.encoder = (_Features if "view" in shape else _Pictures)(shape)
+                if self.method != "modulenet":
+                    names = ["task"] if self.method == "mtl" else ["env", "task"]
+                    self.embedding = nn.ParameterDict(
+                        {name: _unmade(shape[name + "s"], shape["embedding"]) for name in names})
+                self._make_head(shape)
+            except KeyError as error:
+                raise ValueError(f"{checkpoint.path}: the shape has no {error}") from None
+            except RuntimeError as error:
+                raise ValueError(f"{checkpoint.path}: no network has this shape: {error}") from None
             self._load(checkpoint)
             self.eval()
 
@@ -418,11 +435,11 @@ if torch is not None:
                 inputs, mixed = len(self.embedding) * embedding, shape.get("action_embedding", 0)
                 self.alpha = _Mlp(inputs, shape["hidden"], shape["basis"])
                 self.beta = _Mlp(inputs, shape["hidden"], shape["basis"])
-                self.theta = nn.Parameter(torch.zeros(mixed or actions, feature, shape["basis"]))
+                self.theta = _unmade(mixed or actions, feature, shape["basis"])
                 if mixed:
-                    self.phi = nn.Parameter(torch.zeros(actions, mixed))
-                self.policy = nn.ParameterDict({"bias": nn.Parameter(torch.zeros(actions))})
-                self.reward = nn.ParameterDict({"bias": nn.Parameter(torch.zeros(actions))})
+                    self.phi = _unmade(actions, mixed)
+                self.policy = nn.ParameterDict({"bias": _unmade(actions)})
+                self.reward = nn.ParameterDict({"bias": _unmade(actions)})
                 for name in self.embedding:
                     self.add_module("f_" + name, _Mlp(shape["basis"], shape["hidden"], embedding))
             elif self.method == "mlp":
@@ -457,7 +474,10 @@ if torch is not None:
                     raise ValueError(f"{checkpoint.path}: tensor '{file_name}': found shape "
                                      f"{list(checkpoint.tensors[file_name].shape)}, expected that of the metadata")
                 state[name] = tensor.contiguous()
-            self.load_state_dict(state, strict=False)
+            self.to_empty(device="cpu")
+            state.update({name: torch.zeros((), dtype=torch.long) for name in self.state_dict()
+                          if name.endswith("num_batches_tracked")})
+            self.load_state_dict(state)
 
         def of_pair(self, env, task):
             """The policy of one pair, by names or positions, as a module that takes observations alone: for
@@ -466,7 +486,7 @@ if torch is not None:
 
         def _embedded(self, name, index):
             rows = self.embedding[name][index]
-            if not self.shape["normalise_embeddings"]:
+            if not self.normalises:
                 return rows
             return rows * torch.sqrt(rows.shape[1] / (rows.square().sum(1, keepdim=True) + 1e-12))
 
