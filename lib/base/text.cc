@@ -1,10 +1,12 @@
 #include "base/text.h"
 
 #include <locale.h>
+#include <stdlib.h>
 #include <wchar.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -159,6 +161,21 @@ std::string percent_text(double share) {
   std::snprintf(text, sizeof text, "%.0f %%", percent);
   return text;
 }
+
+#ifndef __cpp_lib_to_chars
+bool parse_real(std::string_view text, double& value) {
+  // strtod would take blanks, a plus and hexadecimal digits, too.
+  if (text.empty() || text.find_first_not_of("0123456789.eE+-infatyINFATY") != text.npos || text[0] == '+')
+    return false;
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string whole(text);
+  char* end;
+  errno = 0;
+  value = strtod_l(whole.c_str(), &end, plain);
+  const bool fits = errno != ERANGE || (value != 0 && std::isfinite(value));
+  return fits && end == whole.c_str() + whole.size();
+}
+#endif
 
 std::string extension_of(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();

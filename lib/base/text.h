@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 namespace synpo {
@@ -65,11 +66,23 @@ std::string counted(int64_t n, std::string_view noun);
 // Digits are never a slip. "" where there is no such name, or where more than three are as near as one another.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& names);
 
+#ifndef __cpp_lib_to_chars
+// As parse_whole.
+bool parse_real(std::string_view text, double& value);
+#endif
+
 // Reads the whole text as a number; false, and `value` is anything, where it is not a number or does not fit.
 template <class Number>
 bool parse_whole(std::string_view text, Number& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
+#ifndef __cpp_lib_to_chars  // libc++'s from_chars knows integers only
+  if constexpr (std::is_floating_point_v<Number>)
+    return parse_real(text, value);
+  else
+#endif
+  {
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    return error == std::errc() && end == text.data() + text.size();
+  }
 }
 
 }  // namespace synpo

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "base/error.h"
 #include "format/tsv.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
@@ -14,7 +15,7 @@ namespace {
 constexpr char kGolden[] = "tests/data/v1/";
 
 TEST(GoldenV1, Pairs) {
-  Input input(std::string(kGolden) + "pairs.tsv");
+  Input input(concat(kGolden, "pairs.tsv"));
   const std::vector<PairRow> rows = read_pairs(input);
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0].env + " " + rows[0].task, "map1 R-B");
