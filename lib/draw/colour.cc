@@ -61,7 +61,7 @@ Rgb ramp_colour(const Ramp& ramp, double rate) {
   return {to_byte(linear.r), to_byte(linear.g), to_byte(linear.b)};
 }
 
-const Scheme& find_scheme(const std::string& name) {
+const Scheme& find_scheme(std::string_view name) {
   for (const Scheme& scheme : kSchemes)
     if (name == scheme.name) return scheme;
   throw std::invalid_argument("expected " + alternatives(scheme_names()));

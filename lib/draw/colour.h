@@ -1,6 +1,7 @@
 // Colours of the pictures: ramps on which darker means better, and inks that can be read on them.
 #pragma once
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/rgb.h"
@@ -25,7 +26,7 @@ struct Scheme {
 
 // "safe" (blue and orange: told apart by colour-blind readers), "purple-red" (Figure 6), "blue-red" (Figures 4 and 5),
 // "figure8" (part Q in purple, all else in red). Throws std::invalid_argument for any other name.
-const Scheme& find_scheme(const std::string& name);
+const Scheme& find_scheme(std::string_view name);
 std::vector<std::string> scheme_names();
 
 // The ramp of a group of the table; a grey one for all pairs (-1).

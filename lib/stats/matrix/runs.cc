@@ -129,7 +129,7 @@ const std::vector<MeasureKind>& measure_kinds() {
   return kinds;
 }
 
-const MeasureKind& find_measure(const std::string& name) {
+const MeasureKind& find_measure(std::string_view name) {
   for (const MeasureKind& kind : measure_kinds())
     if (name == kind.name) return kind;
   throw std::invalid_argument("expected success, reward, length, wrong or timeouts");

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -75,6 +76,6 @@ struct MeasureKind {
 // success, reward, length, wrong, timeouts
 const std::vector<MeasureKind>& measure_kinds();
 // Throws std::invalid_argument for another name.
-const MeasureKind& find_measure(const std::string& name);
+const MeasureKind& find_measure(std::string_view name);
 
 }  // namespace synpo
