@@ -87,6 +87,8 @@ beyond() {
         taken "$command" "${lows[@]}"
         taken "$command" "${highs[@]}"
     done
-    [ "$tried" -ge 115 ] || complain "found $tried options"
+    local expected=115
+    synpo-render map --help >/dev/null 2>&1 || expected=92  # of a build that draws no pictures
+    [ "$tried" -ge "$expected" ] || complain "found $tried options"
     echo "# $tried options with a range" >&3
 }

@@ -94,7 +94,8 @@ TEST_P(Methods, GradientsAreFiniteDifferences) {
   for (const double dropout : {0.0, kDropout}) {
     if (dropout > 0 && GetParam().method != "modulenet") continue;
     expect_finite_differences(
-        net, steps.batch(), {0.3, 0.5, 0.7, dropout, /*discount=*/0}, [](const Losses& losses) { return losses.total; },
+        net, steps.batch(), {{0.3, 0.5, 0.7}, dropout, /*discount=*/0},
+        [](const Losses& losses) { return losses.total; },
         [&](const std::string& name) { return !fixed || !name.starts_with("phi."); });
   }
 }
