@@ -109,6 +109,11 @@ Model small_model(const World& world, const std::string& method) {
 
 std::string bytes(const Ppo& run) { return format_checkpoint(run.checkpoint(true)); }
 
+std::vector<float> weights(const Ppo& run) {
+  const float* const first = run.model().parameters.data();
+  return {first, first + run.model().policy->parameters().total()};
+}
+
 TEST(Ppo, TheFirstMinibatchAfterARolloutHasRatioOneAndNoDivergence) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(2);
@@ -130,16 +135,24 @@ TEST(Ppo, MovesTheValueAloneAtFirstAndThenThePolicy) {
   const GridSet world = GridSet::open("gridworld");
   Parallel parallel(1);
   Ppo run(world, parallel, small_model(world, "synpo"), small_ppo(), 4);
-  const auto weights = [&] {
-    return std::vector<float>(run.model().parameters.data(),
-                              run.model().parameters.data() + run.model().policy->parameters().total());
-  };
-  const std::vector<float> before = weights();
+  const std::vector<float> before = weights(run);
   run.update();
-  EXPECT_EQ(weights(), before);
+  EXPECT_EQ(weights(run), before);
   run.update();
-  EXPECT_NE(weights(), before);
+  EXPECT_NE(weights(run), before);
   EXPECT_EQ(run.steps(), 2 * 5 * 12);
+}
+
+TEST(Ppo, OnePassOverARolloutIsEnoughToMoveThePolicy) {
+  const GridSet world = GridSet::open("gridworld");
+  Parallel parallel(1);
+  PpoOptions options = small_ppo();
+  options.epochs = 1;
+  options.value_warm_up = 0;
+  Ppo run(world, parallel, small_model(world, "synpo"), options, 4);
+  const std::vector<float> before = weights(run);
+  run.update();
+  EXPECT_NE(weights(run), before);
 }
 
 TEST(Ppo, ThreadsDoNotShowAndAResumedRunGoesOnToTheSameBits) {
