@@ -87,6 +87,20 @@ setup() {
     synpo-eval -q -p two.tsv -n 1 <unbroken >/dev/null
 }
 
+# An episode has 1 for the first of its treasures, 11 for the second, -10 for a wrong one, and -0.01 or -0.02 a step.
+@test "ppo: the log's reward is one that its successes, wrong treasures and steps can have" {
+    synpo-finetune ppo "${PPO[@]}" --lanes 64 --rollout 64 --steps 4096 --epochs 1 --report 1 --log log.tsv \
+        <a.ckpt >tuned
+    [ "$(awk -F '\t' '
+        NR == 1 { for (i = 1; i <= NF; ++i) at[$i] = i; next }
+        $at["episodes"] > 0 {
+            ++reports
+            wrong = 10 * $at["wrong"]; steps = 0.01 * $at["length"]; reward = $at["reward"]
+            if (reward < -wrong - 2 * steps - 0.001 || reward > 11 * $at["success"] + 1 - wrong - steps + 0.001) print
+        }
+        END { print reports + 0 }' log.tsv)" -ge 1 ]
+}
+
 @test "ppo: its log is drawn as curves" {
     synpo-render curves --help >/dev/null || skip "this build draws no pictures"
     synpo-finetune ppo "${PPO[@]}" --steps 64 --log log.tsv --report 1 --evaluate-every 1 --evaluate-episodes 2 \
