@@ -46,7 +46,7 @@ TEST(Objective, ItsGradientGoesThroughEveryMethodUnderFrozenStatistics) {
     batch.objective = &objective;
     batch.frozen_statistics = true;
     expect_finite_differences(
-        net, batch, {0.3, 0.5, 0.7}, [](const Losses& losses) { return losses.total; },
+        net, batch, {{0.3, 0.5, 0.7}}, [](const Losses& losses) { return losses.total; },
         [](const std::string&) { return true; });
     EXPECT_EQ(net.statistics, statistics) << "frozen";
   }

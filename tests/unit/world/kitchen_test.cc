@@ -66,7 +66,5 @@ TEST(Kitchen, RefusesHostileText) {
   EXPECT_EQ(message_of([] { KitchenSet({small_kitchen(), small_kitchen()}); }), "two environments are named 'small'");
 }
 
-constexpr KitchenTask kMugToFridge = {2, kFridge}, kMugToSink = {2, kSink};
-
 }  // namespace
 }  // namespace synpo
