@@ -48,6 +48,9 @@ TEST(Pool, RefusesWhatCannotBePooled) {
   other.rows.back().window = 0;
   EXPECT_EQ(failure(other), Exit::kData);
   other = matrix;
+  other.rows.back().temperature = 0.25;
+  EXPECT_EQ(failure(other), Exit::kData);
+  other = matrix;
   other.rows.back().method = "mlp";
   EXPECT_EQ(failure(other), Exit::kData);
   EXPECT_EQ(failure(other, "synpo"), Exit::kOk);

@@ -215,6 +215,8 @@ TEST(Split, Quadrants) {
   SplitPlan odd = plan(5, 7, -1);
   odd.setting = 3;
   EXPECT_EQ(Seen(odd, "P").pairs.size(), 3u * 4u) << "the larger half";
+  odd.p_envs = odd.p_tasks = 1;
+  EXPECT_EQ(Seen(odd, "P").pairs.size(), 1u);
 }
 
 std::string refused(SplitPlan p) {

@@ -39,6 +39,14 @@ TEST(Summary, OneRun) {
   EXPECT_EQ(summary_text(groups).find("+-"), std::string::npos) << "one run has no spread";
 }
 
+TEST(Summary, OneEpisodeIsEnoughForARate) {
+  const auto groups = summarise(matrix({row("r1", "e", true, 0, 1, 1, 0, 11.9, 12)}));
+  const SubsetSummary& seen = groups.at(0).subsets.at(0);
+  EXPECT_DOUBLE_EQ(seen.success.pooled, 1);
+  EXPECT_DOUBLE_EQ(seen.reward.pooled, 11.9);
+  EXPECT_DOUBLE_EQ(seen.length.pooled, 12);
+}
+
 TEST(Summary, PaintsTheNamesOfItsLines) {
   const auto groups = summarise(matrix({row("r1", "e", true, 0, 10, 8), row("r1", "f", false, 0, 10, 4)}));
   const auto paint = [](const SubsetSummary&, const std::string& name) { return "<" + name + ">"; };
