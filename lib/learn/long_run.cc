@@ -76,7 +76,7 @@ int LongRun::drive(const char* tool, LongWork& work) const {
   const int signal = stop_signal();
   if (!work.has_learned()) stop_if_asked();
   if (!save.empty()) outputs.save(work.checkpoint(true));
-  if (signal == 0) work.end();
+  if (signal == 0 || work.finished()) work.end();
   outputs.finish(work.checkpoint(!strip));
   return signal && !work.finished() ? 128 + signal : 0;
 }

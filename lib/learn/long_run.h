@@ -54,7 +54,8 @@ class LongWork {
   virtual void update(Progress& progress) = 0;
   // Waits for what the last update may have left to be computed beside the next one: before a time is taken.
   virtual void settle() {}
-  // Called after the last update, unless a signal stopped the run.
+  // Called after the last update, unless a signal stopped the run before it. Throws Stopped where a stop signal comes,
+  // or has come, while it waits for data.
   virtual void end() {}
 
   virtual int64_t updates() const = 0;  // all told, with those before a resumption

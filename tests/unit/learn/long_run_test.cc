@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "base/signals.h"
 #include "helpers/table_helpers.h"
 #include "helpers/temporary.h"
 #include "learn/training.h"
@@ -69,6 +73,28 @@ TEST_F(LongRunTest, AFinishedRunIsWrittenAsItIs) {
   EXPECT_EQ(settings.drive("tool", work), 0);
   EXPECT_EQ(work.said, "save endsave ");
   EXPECT_EQ(contents(settings.save), contents(settings.output));
+}
+
+// A signal comes in one of its updates.
+struct Interrupted : Counting {
+  explicit Interrupted(int64_t at) : at(at) {}
+  void update(Progress& progress) override {
+    Counting::update(progress);
+    if (made == at) std::raise(SIGTERM);
+  }
+  int64_t at;
+};
+
+TEST_F(LongRunTest, ASignalInTheLastUpdateLeavesOutNothingOfTheEnd) {
+  const auto driven = [&](int64_t at) {
+    Interrupted interrupted(at);
+    catch_stop_signals();
+    const int code = settings.drive("tool", interrupted);
+    std::fputs(interrupted.said.c_str(), stderr);
+    std::exit(code);
+  };
+  EXPECT_EXIT(driven(6), testing::ExitedWithCode(128 + SIGTERM), "6 report save save save $");
+  EXPECT_EXIT(driven(7), testing::ExitedWithCode(0), "7 report save endsave $");
 }
 
 TEST(UpdatesWithin, TheTimeBeforeTheUpdatesCountsButNotInTheirRate) {
