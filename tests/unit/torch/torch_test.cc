@@ -136,7 +136,7 @@ Worst compare_with_dump(const std::string& path) {
 
   Parallel parallel(1);
   const Losses losses = net.step(
-      parallel, batch, {number("weight_reward"), number("weight_env"), number("weight_task"), 0, number("discount")});
+      parallel, batch, {{number("weight_reward"), number("weight_env"), number("weight_task")}, 0, number("discount")});
   const double got[5] = {losses.total, losses.policy, losses.reward, losses.env, losses.task};
   const std::vector<double> want = dump.get<double>("loss");
   for (int i = 0; i < 5; ++i) {
