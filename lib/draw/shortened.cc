@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "base/error.h"
 #include "base/text.h"
@@ -19,6 +20,10 @@ std::vector<size_t> character_starts(const std::string& text) {
   }
   starts.push_back(text.size());
   return starts;
+}
+
+Ruler by_columns(std::string ellipsis) {
+  return {.width_of = [](const std::string& text) { return int(columns_of(text)); }, .ellipsis = std::move(ellipsis)};
 }
 
 std::string fitted(const std::string& text, const Ruler& ruler, int width) {

@@ -16,6 +16,9 @@ struct Ruler {
   int gap = 0;  // before a number that tells two names apart
 };
 
+// Of a terminal's columns. The ellipsis is one that every terminal has, or the caller's.
+Ruler by_columns(std::string ellipsis = "..");
+
 // `text`, or its beginning and end with an ellipsis between them, so that it is at most `width` wide.
 std::string fitted(const std::string& text, const Ruler& ruler, int width);
 

@@ -23,8 +23,7 @@ std::vector<std::string> names_of(const std::vector<BlockPlan>& plans) {
     names.push_back(plan.name);
     if (plan.rows > 0) room = std::min(room, 2 * plan.columns);
   }
-  return fitted_apart(
-      names, {.width_of = [](const std::string& text) { return int(columns_of(text)); }, .ellipsis = ".."}, room);
+  return fitted_apart(names, by_columns(), room);
 }
 
 // A row, each stretch of one kind under one colour; blanks below the plan.

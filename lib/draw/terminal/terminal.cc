@@ -16,12 +16,7 @@
 namespace synpo {
 namespace {
 
-constexpr char kEllipsis[] = "..";  // of names; every terminal has it
 constexpr size_t kLeastLabel = 16;  // columns that a task's name may have, however many environments there are
-
-Ruler by_columns() {
-  return {.width_of = [](const std::string& text) { return int(columns_of(text)); }, .ellipsis = kEllipsis};
-}
 
 std::string variable(const char* name) {
   const char* value = std::getenv(name);
@@ -82,8 +77,8 @@ std::string head(const HeatTable& table, size_t label, size_t cell) {
   }
   std::vector<std::vector<std::string>> names;
   size_t lines = 0;
-  const Ruler downwards = {.width_of = [](const std::string& name) { return int(characters(name).size()); },
-                           .ellipsis = kEllipsis};
+  Ruler downwards = by_columns();
+  downwards.width_of = [](const std::string& name) { return int(characters(name).size()); };
   for (const std::string& env : fitted_apart(table.envs, downwards, kMostLines)) {
     names.push_back(characters(env));
     lines = std::max(lines, names.back().size());

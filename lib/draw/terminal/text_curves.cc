@@ -33,15 +33,23 @@ std::string utf8(uint32_t code) {
   return {char(0xe0 | code >> 12), char(0x80 | (code >> 6 & 0x3f)), char(0x80 | (code & 0x3f))};
 }
 
+struct Unit {
+  double size = 1;
+  const char* suffix = "";
+  int more_digits = 0;
+};
+
+// In which numbers of this size are written.
+Unit unit_of(double size) {
+  if (size >= 1e6 && size < 1e9) return {1e6, "M"};
+  if (size >= 1e4 && size < 1e6) return {1e3, "k", 1};
+  return {};
+}
+
 std::string number(double value, int digits = 3) {
+  const Unit unit = unit_of(std::abs(value));
   char text[32];
-  const double size = std::abs(value);
-  if (size >= 1e6 && size < 1e9)
-    std::snprintf(text, sizeof text, "%.*gM", digits, value / 1e6);
-  else if (size >= 1e4 && size < 1e6)
-    std::snprintf(text, sizeof text, "%.*gk", digits + 1, value / 1e3);
-  else
-    std::snprintf(text, sizeof text, "%.*g", digits, value);
+  std::snprintf(text, sizeof text, "%.*g%s", digits + unit.more_digits, value / unit.size, unit.suffix);
   return text;
 }
 
@@ -67,16 +75,15 @@ std::vector<std::string> tick_labels(const Range& range, int parts) {
   const double size = std::max(std::abs(range.low), std::abs(range.high)),
                step = range.high / parts - range.low / parts;
   const bool as_it_is = size >= 1e-3 && size < 1e9;
-  const char suffix = as_it_is && size >= 1e6 ? 'M' : as_it_is && size >= 1e4 ? 'k' : '\0';
-  const double unit = suffix == 'M' ? 1e6 : suffix == 'k' ? 1e3 : 1;
+  const Unit unit = unit_of(size);
   // To a tenth of a step.
-  const double wanted = as_it_is ? 0.7 - std::log10(step / unit) : 1.7 + std::log10(size / step);
+  const double wanted = as_it_is ? 0.7 - std::log10(step / unit.size) : 1.7 + std::log10(size / step);
   const int digits = int(std::clamp(std::ceil(wanted), 0.0, 15.0));
   std::vector<std::string> labels;
   for (int i = 0; i <= parts; ++i) {
     const double value = (range.high * (parts - i) + range.low * i) / parts;
     char text[40];
-    std::snprintf(text, sizeof text, as_it_is ? "%.*f" : "%.*g", digits, value / unit);
+    std::snprintf(text, sizeof text, as_it_is ? "%.*f" : "%.*g", digits, value / unit.size);
     labels.push_back(text);
   }
   const auto has_zero = [](const std::string& text) {
@@ -87,8 +94,8 @@ std::vector<std::string> tick_labels(const Range& range, int parts) {
   for (std::string& text : labels) {
     if (text.find_first_of("123456789") == std::string::npos)
       text.erase(0, text.find_first_of('0'));
-    else if (suffix)
-      text += suffix;
+    else
+      text += unit.suffix;
   }
   return labels;
 }
@@ -155,10 +162,7 @@ class Dots {
   std::vector<Cell> cells_;
 };
 
-Ruler ruler_of(const TextCurvesStyle& style) {
-  return {.width_of = [](const std::string& text) { return int(columns_of(text)); },
-          .ellipsis = style.braille ? "\u2026" : ".."};
-}
+Ruler ruler_of(const TextCurvesStyle& style) { return style.braille ? by_columns("\u2026") : by_columns(); }
 
 std::string cut(const std::string& text, const TextCurvesStyle& style) {
   return fitted(printable(text), ruler_of(style), style.columns);

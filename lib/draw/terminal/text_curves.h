@@ -24,9 +24,9 @@ struct TextCurvesStyle {
   TerminalColour colour = TerminalColour::kNone;
 };
 
-// Without colours each of several braille curves bears a mark of its own in some places.
 // Lines of at most `columns` columns, `rows` in all where that is enough for a plot of a few rows: title, plot with
 // axes, and a legend with the last value of each curve. Curves that have no point are in the legend alone.
+// Without colours each of several braille curves bears a mark of its own in some places.
 std::string text_curves(const std::vector<TextCurve>& curves, const TextCurvesStyle& style);
 
 // Whether LC_ALL, LC_CTYPE or LANG, the first that is set, says that characters are UTF-8.
