@@ -15,6 +15,7 @@
 #include "base/files/destination.h"
 #include "base/files/file_uses.h"
 #include "base/leftovers.h"
+#include "base/text.h"
 
 namespace synpo {
 namespace {
@@ -85,7 +86,7 @@ struct TsvLog::File {
       if (!whole) return;
       const auto found = size_t(std::count(line.begin(), line.end(), '\t')) + 1;
       if (found != fields)
-        rows.bad_line(concat("found ", found, found == 1 ? " field" : " fields", ", expected ", fields,
+        rows.bad_line(concat("found ", counted(int64_t(found), "field"), ", expected ", fields,
                              " as in the header: a row that was cut off?"));
       end = rows.offset();
     }

@@ -73,7 +73,7 @@ bool TsvReader::row(std::vector<std::string>& fields) {
   if (!header && count != columns_.size()) {
     if (line.empty())
       input_.bad_line(concat("found an empty line, expected ", columns_.size(), " fields as in the header"));
-    input_.bad_line(concat("found ", count, count == 1 ? " field" : " fields", ", expected ", columns_.size(),
+    input_.bad_line(concat("found ", counted(int64_t(count), "field"), ", expected ", columns_.size(),
                            " as in the header (fields are separated by one tab each)"));
   }
   fields.resize(count);

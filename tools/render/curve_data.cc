@@ -9,6 +9,7 @@
 
 #include "base/error.h"
 #include "base/files/io.h"
+#include "base/text.h"
 #include "stats/curve.h"
 
 using namespace synpo;
@@ -120,7 +121,7 @@ CurveData read_curve_data(const CurveRequest& request) {
     for (const Log& log : methods[i]) {
       const size_t rows = log.table.x.size();
       if (other < 0 && !evaluated(log))
-        fail(Exit::kData, log.path, ": no value of ", request.name, " in ", rows, rows == 1 ? " row" : " rows",
+        fail(Exit::kData, log.path, ": no value of ", request.name, " in ", counted(int64_t(rows), "row"),
              asked.parts[0].empty() ? "" : ": the run made no evaluation");
       std::vector<Curve> curves;
       const auto add = [&](const std::vector<double>& values) {

@@ -38,8 +38,8 @@ Trajectory read_trajectory(Input& input, int64_t line) {
   std::string text;
   while (input.line_number() < uint64_t(line))
     if (!lines.next(text))
-      fail(Exit::kData, input.name(), ": it ends after ", input.line_number(),
-           input.line_number() == 1 ? " line" : " lines", ", before line ", line);
+      fail(Exit::kData, input.name(), ": it ends after ", counted(int64_t(input.line_number()), "line"),
+           ", before line ", line);
   if (input.line_number() > uint64_t(line))
     fail(Exit::kData, input.name(), ": line ", line, ": found the end of a stream, expected a trajectory");
   try {

@@ -62,7 +62,7 @@ std::string interval_words(const Comparison& c) {
 std::string left_out(const Comparison& c) {
   std::string text;
   const auto add = [&](int64_t count, const char* what, const char* why) {
-    if (count > 0) text += concat(text.empty() ? "Left out: " : "; ", count, ' ', what, count == 1 ? "" : "s", why);
+    if (count > 0) text += concat(text.empty() ? "Left out: " : "; ", counted(count, what), why);
   };
   const auto add_both = [&](const LeftOut& left, const char* why) {
     add(left.pairs, "pair", why);

@@ -64,8 +64,9 @@ beyond() {
     local -a said lows highs
     : >none
     for command in "synpo-gen-expert -p none" synpo-train synpo-eval "synpo-finetune adapt -c none" \
-        "synpo-finetune ppo" "synpo-matrix split" "synpo-matrix rows" "synpo-matrix show" "synpo-matrix filter" "synpo-render heatmap" \
-        "synpo-render curves" "synpo-render map" "synpo-render view" "synpo-render episode" "synpo-render policy"; do
+        "synpo-finetune ppo" "synpo-matrix split" "synpo-matrix rows" "synpo-matrix show" "synpo-matrix filter" \
+        "synpo-render heatmap" "synpo-render curves" "synpo-render map" "synpo-render view" \
+        "synpo-render episode" "synpo-render policy"; do
         lows=() highs=()
         for option in $(with_argument "${command% -? none}"); do
             run_it "$command" "$option=${BAD[number++ % ${#BAD[@]}]}"
