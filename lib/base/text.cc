@@ -154,12 +154,15 @@ std::string shortest(double value) {
   return std::string(text, std::to_chars(text, text + sizeof text, value).ptr);
 }
 
+int64_t whole_percent(double percent, bool some, bool not_all) {
+  int64_t whole = std::llround(percent);
+  if (some) whole = std::max<int64_t>(whole, 1);
+  if (not_all) whole = std::min<int64_t>(whole, 99);
+  return whole;
+}
+
 std::string percent_text(double share) {
-  if (std::isnan(share)) return "-";
-  const double percent = share > 0 && share < 1 ? std::clamp(std::round(100 * share), 1.0, 99.0) : 100 * share;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.0f %%", percent);
-  return text;
+  return std::isnan(share) ? "-" : concat(whole_percent(100 * share, share > 0, share < 1), " %");
 }
 
 #ifndef __cpp_lib_to_chars

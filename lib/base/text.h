@@ -49,6 +49,8 @@ bool natural_less(const std::string& a, const std::string& b);
 // The shortest decimal that reads back to the same bits.
 std::string shortest(double value);
 
+// Rounded to whole per cent; 0 and 100 only where none and all are meant.
+int64_t whole_percent(double percent, bool some, bool not_all);
 // A share in whole per cent, "83 %"; 0 % and 100 % only where it is just that, and "-" for NaN.
 std::string percent_text(double share);
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <map>
 #include <set>
@@ -45,13 +44,6 @@ std::string caption_of(const std::vector<const MatrixRow*>& rows, const HeatTabl
   if (most > 0)
     add(fewest == most ? counted(most, "episode") + " a pair" : concat(fewest, " to ", most, " episodes a pair"));
   return out;
-}
-
-int64_t hundredths_of(double percent, bool some, bool not_all) {
-  int64_t hundredths = std::llround(percent);
-  if (some) hundredths = std::max<int64_t>(hundredths, 1);
-  if (not_all) hundredths = std::min<int64_t>(hundredths, 99);
-  return hundredths;
 }
 
 std::string hundredths_text(int64_t hundredths) {
@@ -162,7 +154,7 @@ HeatTable pool_matrix(const Matrix& matrix, const std::string& method, bool by_p
 }
 
 int64_t whole_percent(int64_t successes, int64_t episodes) {
-  return hundredths_of(100.0 * double(successes) / double(episodes), successes > 0, successes < episodes);
+  return whole_percent(100.0 * double(successes) / double(episodes), successes > 0, successes < episodes);
 }
 
 std::string rate_text(int64_t successes, int64_t episodes) {
@@ -171,7 +163,7 @@ std::string rate_text(int64_t successes, int64_t episodes) {
 
 std::string rate_text(const HeatMean& mean) {
   if (mean.each >= 0) return rate_text(mean.successes, mean.episodes);
-  return hundredths_text(hundredths_of(100.0 * mean.mean(), mean.successes > 0, mean.successes < mean.episodes));
+  return hundredths_text(whole_percent(100.0 * mean.mean(), mean.successes > 0, mean.successes < mean.episodes));
 }
 
 }  // namespace synpo

@@ -108,7 +108,6 @@ TEST(Text, CountedNouns) {
   EXPECT_EQ(counted(2, "step"), "2 steps");
 }
 
-}  // namespace
 TEST(PercentText, IsAllOrNothingOnlyWhereItIsJustThat) {
   EXPECT_EQ(percent_text(0), "0 %");
   EXPECT_EQ(percent_text(1), "100 %");
@@ -118,4 +117,5 @@ TEST(PercentText, IsAllOrNothingOnlyWhereItIsJustThat) {
   EXPECT_EQ(percent_text(std::nan("")), "-");
 }
 
+}  // namespace
 }  // namespace synpo
