@@ -158,12 +158,14 @@ void Adaptation::compute_features() {
 
 bool Adaptation::has_embedding_loss() const {
   const size_t step_bytes = model_.policy->embedding_loss_step_bytes();
-  return step_bytes > 0 && !options_.targets.recognisers && !options_.targets.basis && !options_.targets.coefficients &&
+  return step_bytes > 0 && !options_.targets.basis && !options_.targets.coefficients &&
          env_.size() <= options_.memory_bytes / step_bytes;
 }
 
 void Adaptation::extend_embedding_loss() {
-  if (!embedding_loss_) embedding_loss_ = model_.policy->embedding_loss(model_.parameters.data(), new_env_, new_task_);
+  if (!embedding_loss_)
+    embedding_loss_ =
+        model_.policy->embedding_loss(model_.parameters.data(), new_env_, new_task_, options_.targets.recognisers);
   std::vector<EmbeddingLoss::Steps> episodes;
   for (size_t i = embedding_loss_->episodes(); i < demonstrations(); ++i) {
     const size_t at = first_[i];

@@ -2,7 +2,7 @@
 // from a few demonstrations, as in Algorithm 1, while all else stays as it is.
 //
 // New is what no seen pair of the checkpoint has. What never changes is computed once for every demonstrated step: psi,
-// and where embeddings alone are learned, all that the method's EmbeddingLoss keeps.
+// and where embeddings alone, or they and the recognisers, are learned, all that the method's EmbeddingLoss keeps.
 #pragma once
 #include <cstddef>
 #include <cstdint>

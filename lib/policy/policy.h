@@ -88,10 +88,11 @@ class Policy {
   // The table of embeddings [environments, or tasks; width]; nullptr where the method has none.
   const TensorInfo* embeddings(PairSide side) const;
   std::vector<const TensorInfo*> group(ParameterGroup group) const;
-  // The loss of the embeddings of these environments and tasks, everything else taken as it is in `parameters`, and how
-  // many bytes it keeps of a step. nullptr and 0 where the method has none.
+  // The loss of the embeddings of these environments and tasks and, where asked for, of the recognisers, everything
+  // else taken as it is in `parameters`; and how many bytes it keeps of a step. nullptr and 0 where the method has
+  // none.
   virtual std::unique_ptr<EmbeddingLoss> embedding_loss(const T* parameters, const std::vector<bool>& new_env,
-                                                        const std::vector<bool>& new_task) const;
+                                                        const std::vector<bool>& new_task, bool recognisers) const;
   virtual size_t embedding_loss_step_bytes() const { return 0; }
 
   virtual size_t observation_size() const = 0;  // bytes of a state

@@ -12,6 +12,11 @@ Perceptron<T>::Perceptron(const std::string& name, int in, int hidden, int out, 
       out_bias_(parameters.add(name + ".out.bias", {out})) {}
 
 template <class T>
+Perceptron<T>::Perceptron(const PerceptronPlace& place)
+    : in_(place.in), hidden_(place.hidden), out_(place.out), hidden_weight_(place.hidden_weight),
+      hidden_bias_(place.hidden_bias), out_weight_(place.out_weight), out_bias_(place.out_bias) {}
+
+template <class T>
 void Perceptron<T>::initialise(InitStream& stream, T* parameters) const {
   stream.uniform(parameters + hidden_weight_, size_t(in_) * hidden_, xavier_bound(in_, hidden_));
   stream.uniform(parameters + out_weight_, size_t(hidden_) * out_, xavier_bound(hidden_, out_));

@@ -22,6 +22,8 @@ class Perceptron {
  public:
   // Adds NAME.hidden.weight [in, hidden], NAME.hidden.bias, NAME.out.weight [hidden, out] and NAME.out.bias.
   Perceptron(const std::string& name, int in, int hidden, int out, Layout& parameters);
+  // One whose tensors stand there already.
+  explicit Perceptron(const PerceptronPlace& place);
 
   int in() const { return in_; }
   int out() const { return out_; }

@@ -16,12 +16,14 @@ template <class T>
 class Recogniser {
  public:
   Recogniser(const std::string& name, int in, int hidden, const EmbeddingTable<T>& table, Layout& parameters);
+  // One whose perceptron stands there already.
+  explicit Recogniser(const PerceptronPlace& place) : f_(place) {}
 
   void initialise(InitStream& stream, T* parameters) const { f_.initialise(stream, parameters); }
   const Perceptron<T>& perceptron() const { return f_; }
 
-  // The mean cross-entropy of x [rows, in] against truth [rows]. `weight` times its gradients are added to dx, to the
-  // parameters' gradient and to the table's.
+  // The mean cross-entropy of x [rows, in] against truth [rows]. `weight` times its gradients are added to dx
+  // (may be null), to the parameters' gradient and to the table's.
   double step(Parallel& parallel, int rows, const T* x, const int* truth, EmbeddingTable<T>& table, double weight,
               const T* parameters, T* dx, T* gradient);
 

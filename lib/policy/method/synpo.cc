@@ -247,9 +247,9 @@ void SynPo<T>::infer_head(int size, const T* psi, const int* pair, T* logits) co
 
 template <class T>
 std::unique_ptr<EmbeddingLoss> SynPo<T>::embedding_loss(const T* parameters, const std::vector<bool>& new_env,
-                                                        const std::vector<bool>& new_task) const {
+                                                        const std::vector<bool>& new_task, bool recognisers) const {
   if constexpr (std::is_same_v<T, float>)
-    if (env_) return std::make_unique<SynPoEmbeddingLoss>(*this, parameters, new_env, new_task);
+    if (env_) return std::make_unique<SynPoEmbeddingLoss>(*this, parameters, new_env, new_task, recognisers);
   return nullptr;
 }
 

@@ -38,7 +38,7 @@ class SynPo : public EncodedPolicy<T> {
   explicit SynPo(const PolicyShape& shape, Context context = Context::kEnvAndTask);
 
   std::unique_ptr<EmbeddingLoss> embedding_loss(const T* parameters, const std::vector<bool>& new_env,
-                                                const std::vector<bool>& new_task) const override;
+                                                const std::vector<bool>& new_task, bool recognisers) const override;
   size_t embedding_loss_step_bytes() const override;
 
  protected:

@@ -45,7 +45,7 @@ size_t SynPoEmbeddingLoss::step_bytes(const PolicyShape& shape) {
 
 SynPoEmbeddingLoss::Kind::Kind(const EmbeddingTable<float>& table, const Recogniser<float>& f, const float* parameters,
                                const std::vector<bool>& is_new)
-    : table(table), f(f.perceptron().place(), parameters) {
+    : table(table), f(f.perceptron().place(), parameters), learned_f(f.perceptron().place()) {
   for (int row = 0; row < int(is_new.size()); ++row)
     if (is_new[row]) rows.push_back(row);
   place.assign(is_new.size(), fresh());
@@ -53,9 +53,11 @@ SynPoEmbeddingLoss::Kind::Kind(const EmbeddingTable<float>& table, const Recogni
 }
 
 SynPoEmbeddingLoss::SynPoEmbeddingLoss(const SynPo<float>& policy, const float* parameters,
-                                       const std::vector<bool>& new_env, const std::vector<bool>& new_task)
-    : shape_(policy.shape()), kind_{{*policy.env_, *policy.f_env_, parameters, new_env},
-                                    {policy.task_, policy.f_task_, parameters, new_task}},
+                                       const std::vector<bool>& new_env, const std::vector<bool>& new_task,
+                                       bool recognisers)
+    : shape_(policy.shape()),
+      learns_recognisers_(recognisers), kind_{{*policy.env_, *policy.f_env_, parameters, new_env},
+                                              {policy.task_, policy.f_task_, parameters, new_task}},
       coefficient_{{policy.coefficient_[kPolicy].place(), parameters},
                    {policy.coefficient_[kReward].place(), parameters}},
       theta_(action_matrices(shape_, policy.form_, parameters)), bias_{
@@ -81,6 +83,7 @@ void SynPoEmbeddingLoss::take_in(const Steps& steps, Episode& episode) const {
   episode.reward.assign(steps.reward, steps.reward + n);
   float* x = episode.x.grow(size_t(n) * actions * basis);
   for (int a = 0; a < actions; ++a) gemm(Op::kAsIs, n, steps.psi, d, theta_[a], x + size_t(a) * basis, actions * basis);
+  if (learns_recognisers_) return;
   std::vector<float> at_label(size_t(n) * basis), hidden(size_t(n) * shape_.hidden);
   for (int i = 0; i < n; ++i)
     std::copy_n(x + (size_t(i) * actions + steps.label[i]) * basis, basis, at_label.data() + size_t(i) * basis);
@@ -225,9 +228,37 @@ void SynPoEmbeddingLoss::recognise(Which which, const Episode& episode, float ea
        width, true);
 }
 
-// The losses, without weights, and the gradient.
-Losses SynPoEmbeddingLoss::reduce(const std::vector<Part>& parts, const float* parameters, float* gradient) {
-  Losses losses;
+// Where f_env and f_task are learned: their losses, and the gradients of their own and of the embeddings.
+void SynPoEmbeddingLoss::learn_recognisers(Parallel& parallel, size_t steps, const LossWeights& weights,
+                                           const float* parameters, float* gradient, Losses& losses) {
+  const int actions = shape_.actions, basis = shape_.basis;
+  float* x = drawn_x_.grow(steps * basis);
+  std::vector<int> truth[kKinds];
+  for (size_t i = 0; i < drawn_.size(); ++i) {
+    const Episode& episode = episodes_[drawn_[i]];
+    for (int time = 0; time < times_[i]; ++time)
+      for (int t = 0; t < episode.size; ++t)
+        x = std::copy_n(episode.x.data() + (size_t(t) * actions + episode.label[t]) * basis, basis, x);
+    for (const Which which : {kEnv, kTask})
+      truth[which].insert(truth[which].end(), size_t(times_[i]) * episode.size, episode.key[which]);
+  }
+  const auto learn = [&](Which which, double weight) {
+    Kind& kind = kind_[which];
+    const PerceptronPlace at = kind.learned_f.perceptron().place();
+    std::fill_n(gradient + at.hidden_weight, size_t(at.in) * at.hidden, 0.0f);
+    std::fill_n(gradient + at.hidden_bias, at.hidden, 0.0f);
+    std::fill_n(gradient + at.out_weight, size_t(at.hidden) * at.out, 0.0f);
+    std::fill_n(gradient + at.out_bias, at.out, 0.0f);
+    return kind.learned_f.step(parallel, int(steps), drawn_x_.data(), truth[which].data(), kind.table, weight,
+                               parameters, nullptr, gradient);
+  };
+  losses.env = learn(kEnv, weights.env);
+  losses.task = learn(kTask, weights.task);
+}
+
+// Adds up the losses, without weights, and the embeddings' gradient.
+void SynPoEmbeddingLoss::reduce(const std::vector<Part>& parts, const float* parameters, float* gradient,
+                                Losses& losses) {
   for (const Part& part : parts) {
     losses.policy += part.head[kPolicy];
     losses.reward += part.head[kReward];
@@ -244,7 +275,6 @@ Losses SynPoEmbeddingLoss::reduce(const std::vector<Part>& parts, const float* p
     std::fill_n(gradient + kind.table.offset(), kind.table.size(), 0.0f);
     kind.table.backward(parameters, gradient);
   }
-  return losses;
 }
 
 Losses SynPoEmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights,
@@ -264,12 +294,15 @@ Losses SynPoEmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& d
       const Episode& episode = episodes_[drawn_[i]];
       const float each = float(times_[i]) / float(steps);
       head_losses(episode, each, weights.reward, by_pair_.group_of[i], part);
+      if (learns_recognisers_) continue;
       recognise(kEnv, episode, each, weights.env, part);
       recognise(kTask, episode, each, weights.task, part);
     }
   });
   compose_backward(parallel);
-  Losses losses = reduce(parts, parameters, gradient);
+  Losses losses;
+  if (learns_recognisers_) learn_recognisers(parallel, steps, weights, parameters, gradient, losses);
+  reduce(parts, parameters, gradient, losses);
   losses.add_up(weights);
   return losses;
 }

@@ -1,9 +1,12 @@
-// The losses of Algorithm 1 as a function of new embeddings alone, where all else of SynPo stays as it is.
+// The losses of Algorithm 1 as a function of new embeddings alone, or of these and f_env and f_task, where all else of
+// SynPo stays as it is.
 //
 // What never changes is computed once for every demonstrated step: x(s, a) of all actions, f_env(x) and f_task(x) at
 // the expert's action, and log sum exp of what the old environments, and tasks, score. An update is left with
 //   alpha(z) and beta(z) of the pairs drawn,   logits_a = alpha^T x(s, a) + b_a,   r = beta^T x(s, a) + c_a,
 // and f(x)^T e of the new e. An episode that is drawn several times is computed once, and weighs so many times as much.
+// Where f_env and f_task are learned, they are computed anew from x(s, a) at the expert's action, an episode as often
+// as it is drawn.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -30,9 +33,9 @@ class SynPoEmbeddingLoss : public EmbeddingLoss {
   static size_t step_bytes(const PolicyShape& shape);
 
   // Rows of the embeddings that are marked as new are those to be learned; everything else is taken as it is in
-  // `parameters`.
+  // `parameters`, but f_env and f_task where `recognisers` asks for them.
   SynPoEmbeddingLoss(const SynPo<float>& policy, const float* parameters, const std::vector<bool>& new_env,
-                     const std::vector<bool>& new_task);
+                     const std::vector<bool>& new_task, bool recognisers);
 
   void add(Parallel& parallel, const std::vector<Steps>& episodes) override;
   size_t episodes() const override { return episodes_.size(); }
@@ -53,7 +56,8 @@ class SynPoEmbeddingLoss : public EmbeddingLoss {
     std::vector<int> place;  // of a row among them; one more than the last for the old ones, which are one class
     EmbeddingTable<float> table;
     FrozenPerceptron<float> f;
-    Packed<float> packed;  // the new rows, transposed
+    Recogniser<float> learned_f;  // the same, where it is learned
+    Packed<float> packed;         // the new rows, transposed
   };
   struct Episode {
     int key[kKinds];  // env and task
@@ -79,9 +83,12 @@ class SynPoEmbeddingLoss : public EmbeddingLoss {
   void compose_backward(Parallel& parallel);
   void head_losses(const Episode& episode, float each, double reward_weight, int pair, Part& part);
   void recognise(Which which, const Episode& episode, float each, double weight, Part& part) const;
-  Losses reduce(const std::vector<Part>& parts, const float* parameters, float* gradient);
+  void learn_recognisers(Parallel& parallel, size_t steps, const LossWeights& weights, const float* parameters,
+                         float* gradient, Losses& losses);
+  void reduce(const std::vector<Part>& parts, const float* parameters, float* gradient, Losses& losses);
 
   PolicyShape shape_;
+  bool learns_recognisers_;
   Kind kind_[kKinds];
   FrozenPerceptron<float> coefficient_[kHeads];  // alpha, beta
   std::vector<Packed<float>> theta_;             // [A], theta phi(a) [d, K]
@@ -91,6 +98,7 @@ class SynPoEmbeddingLoss : public EmbeddingLoss {
   std::vector<size_t> drawn_;
   std::vector<int> times_;
   Groups by_pair_;
+  Buffer<float> drawn_x_;  // [steps, K] at the expert's action, where recognisers are learned
   Buffer<float> input_, dinput_, hidden_[kHeads], coefficients_[kHeads], dcoefficients_[kHeads];
 };
 

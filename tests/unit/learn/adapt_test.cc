@@ -70,14 +70,14 @@ TEST(Adapt, NewEmbeddingsAreLearnedAndNothingElseMovesByABit) {
   EXPECT_TRUE(after.is_seen({3, 6}));
 }
 
-// Losses and embeddings of some updates, from demonstrations of which some come later than others, some are of one
-// pair, and old and new environments and tasks stand together in every way.
+// Losses of some updates, and the embeddings and recognisers after them, from demonstrations of which some come later
+// than others, some are of one pair, and old and new environments and tasks stand together in every way.
 struct Updates {
   std::vector<double> losses;
-  std::vector<float> embeddings;
+  std::vector<float> embeddings, recognisers;
 };
 
-Updates updates(const PolicyShape& shape, int threads, size_t memory_bytes) {
+Updates updates(const PolicyShape& shape, bool recognisers, int threads, size_t memory_bytes) {
   const GridSet world = first_mazes(6);
   Parallel parallel(threads);
   AdaptOptions options;
@@ -85,6 +85,7 @@ Updates updates(const PolicyShape& shape, int threads, size_t memory_bytes) {
   options.adam.learning_rate = 0.03;
   options.losses = {0.5, 0.3, 0.2};
   options.memory_bytes = memory_bytes;
+  options.targets.recognisers = recognisers;
   const Model start = trained_on(world, {{0, 0}, {1, 1}, {2, 0}, {3, 1}, {5, 7}}, shape);
   Adaptation adaptation(world, parallel, widen(start, world, world, 1, 5), options, 5);
   for (int i = 0; i < 6; ++i) adaptation.add(demonstration(world, {i, (i * i) % 4}));
@@ -96,8 +97,12 @@ Updates updates(const PolicyShape& shape, int threads, size_t memory_bytes) {
     for (const double loss : {losses.total, losses.policy, losses.reward, losses.env, losses.task})
       result.losses.push_back(loss);
   }
-  for (const char* name : {"embedding.env", "embedding.task"})
-    for (const float value : tensor(adaptation.model(), name)) result.embeddings.push_back(value);
+  const auto take = [&](ParameterGroup group, std::vector<float>& values) {
+    for (const TensorInfo* info : adaptation.model().policy->group(group))
+      for (const float value : tensor(adaptation.model(), info->name)) values.push_back(value);
+  };
+  take(ParameterGroup::kEmbeddings, result.embeddings);
+  take(ParameterGroup::kRecognisers, result.recognisers);
   const std::vector<float> before = tensor(widen(start, world, world, 1, 5), "embedding.env"),
                            after = tensor(adaptation.model(), "embedding.env");
   EXPECT_EQ(changed_rows(before, after, shape.embedding), std::vector<int>{4});
@@ -107,18 +112,23 @@ Updates updates(const PolicyShape& shape, int threads, size_t memory_bytes) {
 TEST(Adapt, WhatIsKeptOfTheHeadGivesWhatTheWholeHeadDoes) {
   for (const bool general : {false, true})
     for (const bool normalise : {false, true}) {
-      SCOPED_TRACE(testing::Message() << "general form " << general << ", normalised embeddings " << normalise);
+      const bool recognisers = general != normalise;
+      SCOPED_TRACE(testing::Message() << "general form " << general << ", normalised embeddings " << normalise
+                                      << ", recognisers learned " << recognisers);
       PolicyShape shape = tiny_shape(false);
       shape.action_embedding = general ? 3 : 0;
       shape.normalise_embeddings = normalise;
       for_every_target([&](const std::string&) {
         const double limit = 1e-6 + kernels<float>().product_error;
-        const Updates whole = updates(shape, 1, 0), kept = updates(shape, 1, size_t(1) << 30);
+        const Updates whole = updates(shape, recognisers, 1, 0), kept = updates(shape, recognisers, 1, size_t(1) << 30);
         for (size_t i = 0; i < whole.losses.size(); ++i)
           EXPECT_NEAR(kept.losses[i], whole.losses[i], limit * whole.losses[i]) << i;
         EXPECT_LT(relative_error(kept.embeddings, whole.embeddings), limit);
+        EXPECT_LT(relative_error(kept.recognisers, whole.recognisers), limit);
         EXPECT_NE(kept.embeddings, whole.embeddings) << "the same way twice?";
-        EXPECT_EQ(updates(shape, 2, size_t(1) << 30).embeddings, kept.embeddings) << "threads show";
+        const Updates threads = updates(shape, recognisers, 2, size_t(1) << 30);
+        EXPECT_EQ(threads.embeddings, kept.embeddings) << "threads show";
+        EXPECT_EQ(threads.recognisers, kept.recognisers) << "threads show";
       });
     }
 }
