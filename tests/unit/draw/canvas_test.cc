@@ -75,8 +75,8 @@ TEST(Text, ClippingIsCounted) {
 }
 
 TEST(Canvas, TooLargeAPictureIsRefused) {
-  for (const auto& [width, height] : {std::pair(30'001, 1), std::pair(1, 30'001), std::pair(20'001, 20'000)})
-    EXPECT_TRUE(fails_for(kPictureTooLarge, [&] { Canvas(width, height, font()); })) << width;
+  for (const auto& size : {std::pair(30'001, 1), std::pair(1, 30'001), std::pair(20'001, 20'000)})
+    EXPECT_TRUE(fails_for(kPictureTooLarge, [&] { Canvas(size.first, size.second, font()); })) << size.first;
 }
 
 TEST(Font, MissingFontNamesThePackage) {
