@@ -28,8 +28,8 @@ class EmbeddingLoss {
   virtual size_t episodes() const = 0;
 
   // Means over the steps of the episodes drawn, each as often as it is. In `gradient`, laid out as the policy's
-  // parameters, the tables of embeddings are overwritten, old rows with zero, and recognisers that are learned; the rest
-  // is left as it was. Bits do not depend on the number of threads.
+  // parameters, the tables of embeddings are overwritten, old rows with zero, and recognisers that are learned; the
+  // rest is left as it was. Bits do not depend on the number of threads.
   virtual Losses step(Parallel& parallel, const std::vector<size_t>& drawn, const LossWeights& weights,
                       const float* parameters, float* gradient) = 0;
 };

@@ -25,8 +25,8 @@ std::vector<const TensorInfo*> Policy<T>::group(ParameterGroup group) const {
 }
 
 template <class T>
-std::unique_ptr<EmbeddingLoss> Policy<T>::embedding_loss(const T*, const std::vector<bool>&,
-                                                         const std::vector<bool>&, bool) const {
+std::unique_ptr<EmbeddingLoss> Policy<T>::embedding_loss(const T*, const std::vector<bool>&, const std::vector<bool>&,
+                                                         bool) const {
   return nullptr;
 }
 
