@@ -210,7 +210,7 @@ std::string Raster::png(double scale) const {
 PdfPage::PdfPage(std::string& to, int width, int height, double scale)
     : CairoSurface(cairo_pdf_surface_create_for_stream(append, &to, width / scale, height / scale), false) {
   check();
-  // What journals and old readers take; newer ones pack the pages where no search finds them.
+  // The same with any cairo: later versions of the format pack what describes a page where no search finds it.
   cairo_pdf_surface_restrict_to_version(surface_, CAIRO_PDF_VERSION_1_4);
   cairo_pdf_surface_set_metadata(surface_, CAIRO_PDF_METADATA_CREATE_DATE, "");
   cairo_scale(cairo_, 1 / scale, 1 / scale);

@@ -6,10 +6,13 @@ namespace synpo {
 
 template <class T>
 Perceptron<T>::Perceptron(const std::string& name, int in, int hidden, int out, Layout& parameters)
-    : in_(in), hidden_(hidden), out_(out), hidden_weight_(parameters.add(name + ".hidden.weight", {in, hidden})),
-      hidden_bias_(parameters.add(name + ".hidden.bias", {hidden})),
-      out_weight_(parameters.add(name + ".out.weight", {hidden, out})),
-      out_bias_(parameters.add(name + ".out.bias", {out})) {}
+    : Perceptron({.in = in,
+                  .hidden = hidden,
+                  .out = out,
+                  .hidden_weight = parameters.add(name + ".hidden.weight", {in, hidden}),
+                  .hidden_bias = parameters.add(name + ".hidden.bias", {hidden}),
+                  .out_weight = parameters.add(name + ".out.weight", {hidden, out}),
+                  .out_bias = parameters.add(name + ".out.bias", {out})}) {}
 
 template <class T>
 Perceptron<T>::Perceptron(const PerceptronPlace& place)

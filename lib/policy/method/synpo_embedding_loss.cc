@@ -294,9 +294,10 @@ Losses SynPoEmbeddingLoss::step(Parallel& parallel, const std::vector<size_t>& d
       const Episode& episode = episodes_[drawn_[i]];
       const float each = float(times_[i]) / float(steps);
       head_losses(episode, each, weights.reward, by_pair_.group_of[i], part);
-      if (learns_recognisers_) continue;
-      recognise(kEnv, episode, each, weights.env, part);
-      recognise(kTask, episode, each, weights.task, part);
+      if (!learns_recognisers_) {
+        recognise(kEnv, episode, each, weights.env, part);
+        recognise(kTask, episode, each, weights.task, part);
+      }
     }
   });
   compose_backward(parallel);
