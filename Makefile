@@ -176,11 +176,13 @@ $(B)/lib/draw/canvas/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(CAIRO_CFLAGS)
 $(B)/lib/draw/video/%.o $(B)/lib/draw/vision/%.o: INCLUDES += $(OPENCV_CFLAGS)
 
 # Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same
-# level.
+# level, and no tuning that leaves some sums of up to so many bits unfused, as GCC 14 has.
+FUSED_ALL := --param=avoid-fma-max-bits=0
 $(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
 	@mkdir -p $(@D)
 	$(call say,CXX,$< for $*)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -O3 -Wno-psabi $(TARGET_$*) -DSYNPO_TARGET=$* -c -o $@ $<
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -O3 -Wno-psabi $(if $(findstring clang,$(CXX)),,$(FUSED_ALL)) $(TARGET_$*) \
+	    -DSYNPO_TARGET=$* -c -o $@ $<
 
 $(B)/%.o: %.cc | $(STD)
 	@mkdir -p $(@D)
