@@ -43,6 +43,13 @@ caught() {
     "$ROOT/scripts/numbers" --root copy 2>err && complain "a matrix of another checkpoint"
     grep -q 'forty2.tsv.gz is of another checkpoint' err
     cp "$ROOT/lab/forty2.tsv.gz" copy/lab/
+    # Drawn actions in a greedy row.
+    sed -i 's/\(greedy.*{seen \)ten2.greedy/\1ten2/' copy/lab/claims.txt
+    want=$("$ROOT/scripts/numbers" --root copy --list 2>/dev/null | grep '3.4 million states, greedy' | head -n 1)
+    sed -i "s%^| 3.4 million states, greedy .*%${want#*: }%" copy/RESULTS.md
+    caught "stands as greedy and is drawn and greedy: | 3.4 million states, greedy"
+    cp "$ROOT/lab/claims.txt" copy/lab/
+    cp "$ROOT/RESULTS.md" copy/
 
     sed -i 's/^| 9.6 million states, greedy .*|$/&\n| made up | 99.9 \/ **99.9** | |/' copy/RESULTS.md
     caught "no claim computes this row, and it has no dagger: | made up | 99.9"
