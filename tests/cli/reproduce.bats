@@ -273,8 +273,75 @@ END
     grep '^eval .*synpo-1.ckpt' calls | sed 's/.*-n //' >got
     printf '%s\n' '2 --first-episode 0 --temperature 0' '2 --first-episode 2 --temperature 0' \
         '1 --first-episode 4 --temperature 0' '2 --first-episode 0' '2 --first-episode 2' '1 --first-episode 4' | cmp - got
-    grep -q '^matrix merge synpo-1.from-0 synpo-1.from-2 synpo-1.from-4' calls
+    grep -q '^matrix merge synpo-1.from-0-2 synpo-1.from-2-2 synpo-1.from-4-1' calls
     ! ls results | grep from || complain "pieces are left"
+}
+
+@test "reproduce --shard: stopped with one length and gone on with another, no episode is left out or counted twice" {
+    stand_ins
+    mv build/synpo-eval build/real
+    printf '#!/bin/bash\n[[ $* != *"--first-episode 2"* ]] || exit 143\nexec %q "$@"\n' "$PWD/build/real" >build/synpo-eval
+    chmod +x build/synpo-eval
+    ! scripts/reproduce small --budget 1e6 --seeds 1 -n 5 --shard 2 -o results || complain "an evaluation that failed"
+    [ -e results/synpo-1.greedy.from-0-2 ]
+    mv build/real build/synpo-eval
+    scripts/reproduce small --budget 1e6 --seeds 1 -n 5 --shard 3 -o results
+    grep -q '^matrix merge synpo-1.greedy.from-0-3 synpo-1.greedy.from-3-2' calls
+    ! ls results | grep from || complain "pieces are left"
+}
+
+@test "reproduce figure456: no two runs are the same, with splits and seeds" {
+    stand_ins
+    scripts/reproduce figure456 --budget 1e6 --splits 2 --seeds 2 -o results 2>/dev/null
+    grep '^train ' calls | sed 's/ --save.*//' >trained
+    [ "$(grep -c figure6 trained)" = 4 ]
+    [ "$(wc -l <trained)" = $((4 + 2 * 9 * 4)) ]
+    [ -z "$(sort trained | uniq -d)" ] || complain "$(sort trained | uniq -d)"
+    grep -q '^matrix table .* synpo-figure6-1.tsv synpo-figure6-2.tsv mlp-figure6-1.tsv mlp-figure6-2.tsv' calls
+}
+
+@test "reproduce: a page says what was run" {
+    stand_ins
+    sed 's/expert/finetune/' build/synpo-gen-expert >build/synpo-finetune
+    chmod +x build/synpo-finetune
+    mkdir maps
+    cp "$ROOT"/scripts/mazes/*.txt maps/
+    page() { scripts/reproduce "$1" --budget 4e6 --seeds 1 -n 1 -o "results/$*" "${@:2}" 2>/dev/null; cat "results/$*/README.md"; }
+    page table4 >got
+    grep -q '^The paper.s are of three seeds. SF is learned by cross-entropy' got
+    ! grep 'World:\|toy' got || complain "neither a world of its own nor a toy"
+    page table4 --recipe paper >got
+    ! grep 'cross-entropy' got || complain "recipe paper has td"
+    page figure8 | grep -q 'Seeds: 1, with one split'
+    page grid | grep -q 'Seeds: 1, with one split'
+    page figure456 | grep -q 'own 20 pairs, the same for every seed'
+    page table4 --world gridworld:maps --toy >got
+    grep -qx 'World: gridworld:maps. Numbers of the paper are of its own.' got
+    grep -q '^With --toy: .* Nothing has been learned' got
+    ! grep '470 million' got || complain "states beside the paper's, for another world"
+    grep -q 'stand in for AI2-THOR' <(page thor)
+    ! grep 'stand in for AI2-THOR' <(page thor --world kitchen:maps) || complain "not the built-in kitchens"
+    # A page of the second run alone has no picture of the first.
+    scripts/reproduce thor --budget 4e6 --seeds 1 -n 1 -o one --run 2 2>/dev/null
+    scripts/reproduce thor --budget 4e6 --seeds 1 -n 1 -o one --merge 2>/dev/null
+    ! grep synpo.png one/README.md || complain "a picture that is not there"
+}
+
+@test "reproduce --world: programs are given the folder again, and the results can be carried with it" {
+    stand_ins
+    mkdir a
+    cp -r "$ROOT/scripts/mazes" a/maps
+    (cd a && ../scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results --run 1 --world gridworld:maps)
+    echo no-env-1 >a/results/stop
+    (cd a && ! ../scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results --run 2 --world gridworld:maps)
+    mv a b
+    (cd b && ../scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results --world gridworld:maps)
+    [ "$(grep -c '^train .*--resume no-env-1.save' calls)" = 1 ]
+    grep -q "^train .*-w gridworld:$PWD/b/maps .*--resume no-env-1.save" calls
+    ! grep '^eval' calls | grep -v -- '-w gridworld:.*/maps ' || complain "an evaluation without its mazes"
+    echo >>b/maps/"$(ls b/maps | head -n 1)"
+    (cd b && fails 64 ../scripts/reproduce figure3 --budget 1e6 --seeds 1 -o results --world gridworld:maps) ||
+        complain "other mazes of the same name"
 }
 
 @test "reproduce: nonsense is wrong usage, and says what is right" {
@@ -283,13 +350,15 @@ END
         "table4 --run 0" "table4 --run" "table4 --slurm --merge" "table4 --parallel 2 --run 1" "table4 --parallel x" \
         "table4 -- -p short" "table4 --run 1 -- -p short" "common-runs" \
         "table4 --run 11 --budget 1e6" "table4 --budget 12" "table4 --recipe big" "table4 --temperature 0" "table4 --temperature warm" "table4 --splits 0" "all" \
-        "table4 --limit 10" "table4 --limit 10m --run 1" "table4 --list --budget 10m" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
+        "table4 --limit 10" "table4 --limit 10m --run 1" "table4 --list --budget 10m" "table4 --limit 10m --budget 40m -o other" \
+        "all --limit 10m --budget 10 -o other" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
         status=0
         # shellcheck disable=SC2086
         scripts/reproduce $words 2>err || status=$?
         [ "$status" = 64 ] || complain "$words: exit code $status, expected 64: $(cat err)"
         grep -q '^reproduce: .' err
     done
+    [ -z "$(find other -type f)" ] || complain "$(find other -type f)"
     ! grep -qs '^train' calls || complain "trained: $(trained)"
     rm build/synpo-train
     status=0

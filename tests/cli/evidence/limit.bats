@@ -69,3 +69,53 @@ results() (
     [ "$status" = 65 ]
     grep -q "part/./small/x.ckpt.cut: its pieces are not whole" err
 }
+
+# until_there PATTERN: waits for such a file.
+until_there() {
+    local i
+    for ((i = 0; i < 600; ++i)); do
+        ! compgen -G "$1" >/dev/null || return 0
+        sleep 0.1
+    done
+    complain "no $1: $(tail err)"
+}
+long=(small --toy --budget 6e6 --seeds 1 -n 3)
+
+@test "reproduce --limit: other files of the folder stay, and a relative TMPDIR is as good" {
+    mkdir -p part/gpu part/small tmp
+    echo table >part/gpu/table.txt
+    reproduce "${asked[@]}" --limit 1s -o part 2>err
+    echo mine >part/small/notes
+    TMPDIR=tmp tree/scripts/reproduce "${asked[@]}" --limit 2s -o part 2>err
+    [ "$(cat part/gpu/table.txt part/small/notes)" = $'table\nmine' ]
+    [ -e part/small/asked ]
+    [ -z "$(ls tmp)" ] || complain "left over: $(ls tmp)"
+}
+
+@test "reproduce --limit: SIGHUP is as the end of the time" {
+    TMPDIR=$PWD tree/scripts/reproduce "${long[@]}" --limit 20m -o part >out 2>err 3>&- &
+    pid=$!
+    until_there 'reproduce-*/small/synpo-1.log'
+    kill -HUP "$pid"
+    wait "$pid"
+    pid=
+    grep -q 'the time is over; small synpo-1 goes on' err
+    [ -e part/small/synpo-1.save.cut ]
+    [ -z "$(ls -d reproduce-* 2>/dev/null)" ] || complain "left over: $(ls -d reproduce-*)"
+}
+
+@test "reproduce --limit: a store that does not take all keeps what it had, and the rest is not lost" {
+    reproduce "${long[@]}" --limit 3s -o part 2>err
+    [ -e part/small/synpo-1.save.cut ]
+    cp -r part before
+    mkdir bin
+    printf '#!/bin/bash\nexit 1\n' >bin/split
+    chmod +x bin/split
+    status=0
+    PATH=$PWD/bin:$PATH reproduce "${long[@]}" --limit 3s -o part 2>err || status=$?
+    [ "$status" = 74 ]
+    diff -r before/small part/small
+    work=$(sed -n 's/.*the rest is in \(.*\), and should.*/\1/p' err)
+    [ -s "$work/small/synpo-1.save" ]
+    reproduce "${long[@]}" --limit 3s -o part 2>err
+}

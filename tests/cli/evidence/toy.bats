@@ -28,3 +28,13 @@ load ../common
     scripts=$(tree/scripts/reproduce all --toy --budget 64 --seeds 1 -n 1 --list -o results)
     [ "$scripts" = '0 runs, 0 million states to learn from' ] || complain "$scripts"
 }
+
+@test "reproduce thor --toy: kitchens of scene files, that checkpoints do not hold" {
+    mkdir tree scenes
+    cp -r "$ROOT/scripts" tree/
+    ln -s "$(dirname "$(command -v synpo-train)")" tree/build
+    for kitchen in FloorPlan2 FloorPlan10; do /usr/bin/python3 "$ROOT/tests/cli/fake_thor.py" scenes $kitchen 1; done
+    tree/scripts/reproduce thor --toy --budget 64 --seeds 1 -n 1 -o results --world kitchen:scenes 2>err ||
+        complain "$(tail err)"
+    grep -q '^| synpo | 1 | [0-9.]* (' results/README.md
+}
