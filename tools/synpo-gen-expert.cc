@@ -31,10 +31,11 @@ void relabel(const World& world, const std::vector<std::string>& files, Output& 
   while (lines.next(line)) {
     stop_if_asked();
     try {
-      output.write(format_trajectory(relabelled(world, parse_trajectory(line, kStepLimit))) + "\n");
+      line = format_trajectory(relabelled(world, parse_trajectory(line, kStepLimit))) + "\n";
     } catch (const Error& error) {
       input.bad_line(error);
     }
+    output.write(line);
   }
   if (!says_end) return;
   lines.check_end();

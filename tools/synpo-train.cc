@@ -73,7 +73,7 @@ int body(int argc, char** argv) {
   if (code != 0) {
     std::vector<std::string> kept = RecipeOptions::option_names();  // by the checkpoint
     kept.insert(kept.end(), {"init", "pairs", "method", "seed"});
-    if (training.total() > 0) kept.emplace_back("time");
+    if (!training.timing()) kept.emplace_back("time");
     tell_how_to_go_on("synpo-train", s, options, std::move(kept), {true, s.stream});
   }
   return code;

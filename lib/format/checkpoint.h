@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/error.h"
 #include "base/files/io.h"
 #include "format/safetensors.h"
 
@@ -44,6 +45,17 @@ struct Checkpoint {
   // The metadata as one JSON object, for people.
   std::string describe() const;
 };
+
+// What `body` finds wrong with the checkpoint's data is said of its file.
+template <class Body>
+auto naming_file(const Checkpoint& checkpoint, Body&& body) {
+  try {
+    return body();
+  } catch (const Error& error) {
+    if (error.code() != Exit::kData || checkpoint.source.empty()) throw;
+    fail(Exit::kData, "cannot read ", checkpoint.source, ": ", error.what());
+  }
+}
 
 Checkpoint read_checkpoint(Input& input);
 Checkpoint load_checkpoint(const std::string& path);  // "-": standard input

@@ -39,7 +39,7 @@ struct TsvLog::File {
   Descriptor opened = {};
   std::optional<Leftover> made = {};  // as long as nothing is in it
   std::string made_path = {};
-  bool in_place = false, begun = false;
+  bool in_place = false, begun = false, left = false;  // left: a stop signal came while a pipe was full
   uint64_t end = 0;  // of the rows that are continued
   std::optional<Error> failure = {};
 
@@ -108,7 +108,8 @@ struct TsvLog::File {
   void put(const std::string& text) {
     const off_t before = lseek(opened.get(), 0, SEEK_END);
     if (write_until_stop(opened.get(), text)) return;
-    fail_with_errno();
+    left = errno == EINTR;
+    if (!left) fail_with_errno();
     if (!in_place && ftruncate(opened.get(), before) != 0) return;
   }
 };
@@ -127,7 +128,7 @@ TsvLog::TsvLog(const std::string& path, bool append, const std::vector<std::stri
 TsvLog::~TsvLog() = default;
 
 void TsvLog::write(const std::vector<double>& values) {
-  if (!file_ || failed()) return;
+  if (!file_ || failed() || file_->left) return;
   if (!file_->begun) file_->begin();
   std::string line;
   for (const double value : values) line.append(line.empty() ? "" : "\t").append(number(value));

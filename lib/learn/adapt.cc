@@ -141,7 +141,7 @@ void Adaptation::add(const Episode& episode) {
 }
 
 void Adaptation::compute_features() {
-  const int d = model_.shape.feature, steps = int(env_.size()), done = int(psi_.size()) / d;
+  const int d = model_.shape.feature, steps = int(env_.size()), done = int(psi_.size() / size_t(d));
   if (done == steps) return;
   psi_.resize(size_t(steps) * d);
   model_.engine->prepare_inference(parallel_, model_.parameters.data(), model_.statistics.data(), {{0, 0}});

@@ -64,15 +64,18 @@ Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& c
 
 Imitation::Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved)
     : Imitation(world, parallel, checkpoint.method, parse_options(checkpoint.options), {}, checkpoint.seed) {
-  const SafeTensors& file = checkpoint.file;
   model_.seen = saved.seen;
   model_.updates = saved.updates;
   model_.states = saved.states;
   model_.window = saved.window;
-  const Layout& parameters = model_.policy->parameters();
-  const Layout& statistics = model_.policy->statistics();
   copy(saved.parameters, average_);
   copy(saved.statistics, average_statistics_);
+  naming_file(checkpoint, [&] { load_training_state(checkpoint.file); });
+}
+
+void Imitation::load_training_state(const SafeTensors& file) {
+  const Layout& parameters = model_.policy->parameters();
+  const Layout& statistics = model_.policy->statistics();
   const bool averaged = options_.averaging > 0;
   get_tensors(file, averaged ? "train/raw/" : "", parameters, model_.parameters.data());
   get_tensors(file, averaged ? "train/raw/" : "", statistics, model_.statistics.data());

@@ -80,6 +80,7 @@ class Imitation {
 
  private:
   Imitation(const World& world, Parallel& parallel, const Checkpoint& checkpoint, const Model& saved);
+  void load_training_state(const SafeTensors& file);
   // Hands the arrays over to the engine.
   void give_to_engine();
   void draw(const RunningOptions& running);

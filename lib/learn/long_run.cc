@@ -47,12 +47,17 @@ void LongRun::add_to(Options& options) {
 int LongRun::drive(const char* tool, LongWork& work) const {
   // Made before the training, so that hours of it don't end in "cannot create".
   RunOutputs outputs(*this, work.columns());
-  if (!work.finished()) work.begin();
+  try {
+    if (!work.finished()) work.begin();
+  } catch (const Stopped&) {
+    if (!work.has_learned()) throw;
+  }
   {
     Progress progress(tool, work.unit(), work.total(), quiet, work.done());
     const TimePoint start = now();
     TimePoint reported = start;
     std::string note;
+    const auto tell = [&](const std::string& trouble) { progress.say(trouble + ": the run goes on"); };
     while (!work.finished() && stop_signal() == 0) {
       try {
         work.update(progress);
@@ -69,16 +74,21 @@ int LongRun::drive(const char* tool, LongWork& work) const {
                             evaluates(update, last) ? evaluate_episodes : 0});
         reported = now();
       }
-      if (saves(update, last)) outputs.save(work.checkpoint(true));
+      if (saves(update, last)) outputs.save(work.checkpoint(true), tell);
       progress.update(work.done(), note);
     }
   }
   const int signal = stop_signal();
   if (!work.has_learned()) stop_if_asked();
   if (!save.empty()) outputs.save(work.checkpoint(true));
-  if (signal == 0 || work.finished()) work.end();
+  bool cut_short = signal != 0 && !work.finished();
+  try {
+    if (!cut_short) work.end();
+  } catch (const Stopped&) {
+    cut_short = true;
+  }
   outputs.finish(work.checkpoint(!strip));
-  return signal && !work.finished() ? 128 + signal : 0;
+  return cut_short ? 128 + stop_signal() : 0;
 }
 
 RunOutputs::RunOutputs(const LongRun& settings, const std::vector<std::string>& columns)
@@ -91,13 +101,20 @@ RunOutputs::RunOutputs(const LongRun& settings, const std::vector<std::string>& 
   if (place.kind == Destination::Kind::kFile) claim_.emplace(place);
 }
 
-void RunOutputs::save(const Checkpoint& checkpoint) const {
-  if (!save_.empty()) write_file(save_, format_checkpoint(checkpoint), Output::Kind::kBinary, true, over_);
+void RunOutputs::save(const Checkpoint& checkpoint, const std::function<void(const std::string&)>& tell) {
+  if (save_.empty()) return;
+  try {
+    write_file(save_, format_checkpoint(checkpoint), Output::Kind::kBinary, true, over_);
+  } catch (const Error& error) {
+    if (tell) tell(error.what());
+    if (!lost_) lost_ = error;
+  }
 }
 
 void RunOutputs::finish(const Checkpoint& checkpoint) {
   output_.write(format_checkpoint(checkpoint));
   output_.finish();
+  if (lost_) throw *lost_;
   log_.check();
 }
 

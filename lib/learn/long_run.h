@@ -1,12 +1,14 @@
 // The tools that learn for hours have this in common: where they write, after which updates, and the loop itself.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/cli/options.h"
 #include "base/cli/progress.h"
+#include "base/error.h"
 #include "base/files/io.h"
 #include "base/files/unfinished.h"
 #include "engine/device.h"
@@ -48,7 +50,8 @@ class LongWork {
  public:
   virtual ~LongWork() = default;
 
-  // Called when all outputs have been found to be writable, where there is an update to make.
+  // Called when all outputs have been found to be writable, where there is an update to make. Throws Stopped where a
+  // stop signal comes while it waits for data.
   virtual void begin() {}
   // Throws Stopped, and is as it was before, where a stop signal comes while it waits for data.
   virtual void update(Progress& progress) = 0;
@@ -80,8 +83,8 @@ class LongWork {
 
 // A long run writes a checkpoint at its end, one to go on from now and then, and a log.
 //
-// All three are checked, against one another and against what the command has read, and opened before the work. The
-// training state is worth more than the log: where that cannot be written the run goes on, and finish() fails.
+// All three are checked, against one another and against what the command has read, and opened before the work. What
+// was learned is worth more than each of them: where one cannot be written the run goes on, and finish() fails.
 class RunOutputs {
  public:
   // The place of the checkpoint that the run goes on from may be taken by what holds as much. Throws kUsage where a
@@ -90,9 +93,9 @@ class RunOutputs {
   RunOutputs(const LongRun& settings, const std::vector<std::string>& columns);
 
   TsvLog& log() { return log_; }
-  // Writes settings.save; nothing without it.
-  void save(const Checkpoint& checkpoint) const;
-  // Writes settings.output. Throws kIo where a row of the log got lost.
+  // Writes settings.save; nothing without it. Hands to `tell` why it could not.
+  void save(const Checkpoint& checkpoint, const std::function<void(const std::string&)>& tell = nullptr);
+  // Writes settings.output. Throws what save() met first, and kIo where a row of the log got lost.
   void finish(const Checkpoint& checkpoint);
 
  private:
@@ -101,6 +104,7 @@ class RunOutputs {
   std::vector<std::string> over_;  // what save_ may be one file with
   Output output_;
   TsvLog log_;
+  std::optional<Error> lost_;  // why `save` was not written, once or more
 };
 
 }  // namespace synpo

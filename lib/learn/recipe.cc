@@ -306,6 +306,8 @@ ImitationOptions RecipeOptions::result(const std::string& method, Sight sight) c
     for (const char* name :
          {"balance", "balance-final", "roll-in", "roll-noise", "fresh-starts", "roll-limit", "running"})
       if (changes_.count(name)) fail(Exit::kUsage, "--", name, " needs --batch-states");
+  if (options.batch_states > 0 && changes_.count("trajectories"))
+    fail(Exit::kUsage, "--trajectories needs --batch-states 0");
   return options;
 }
 

@@ -215,8 +215,6 @@ void RunningDraw::load(const SafeTensors& file, const std::string& prefix, const
     t.started = take(1) != 0;
     if (!t.started) continue;
     if (t.place >= memory.size() || episode.history.count == 0) bad();
-    if (t.following && memory.serial(t.place) == t.serial && episode.now().steps >= memory[t.place].actions.size())
-      bad();
   }
 }
 

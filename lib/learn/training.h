@@ -70,10 +70,11 @@ class Training : public LongWork {
   std::string report(const Report& report) override;
   void settle() override { run_->settle(); }
   Checkpoint checkpoint(bool with_training_state) override { return run_->checkpoint(with_training_state); }
+  // Whether a limit in time is not a number of updates yet.
+  bool timing() const { return to_time_ > 0; }
 
  private:
   void check_length();
-  bool timing() const { return to_time_ > 0; }
   void tell_total(Progress& progress);
   void note_tested_start(Progress& progress);
 

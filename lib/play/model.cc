@@ -16,17 +16,6 @@ namespace synpo {
 
 namespace {
 
-// What `body` finds wrong with the checkpoint's data is said of its file.
-template <class Body>
-auto naming_file(const Checkpoint& checkpoint, Body&& body) {
-  try {
-    return body();
-  } catch (const Error& error) {
-    if (error.code() != Exit::kData || checkpoint.source.empty()) throw;
-    fail(Exit::kData, "cannot read ", checkpoint.source, ": ", error.what());
-  }
-}
-
 void check_holds(const Checkpoint& checkpoint, const World& world, const std::string& name) {
   const auto differs = [&](const auto&... how) {
     fail(Exit::kUsage, kNeedsNoSource, "the checkpoint holds its environments, ", how...);

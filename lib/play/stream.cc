@@ -45,7 +45,7 @@ std::optional<Episode> TrajectoryStream::next() {
     ++lines_;
     hash_.add(line_).add("\n");
     if (!tested_start_ && begins_as_tested(world_, trajectory, episode))
-      tested_start_ = {input_.line_number(), trajectory.seed, trajectory.episode};
+      tested_start_ = {input_.name(), input_.line_number(), trajectory.seed, trajectory.episode};
     return episode;
   } catch (const Error& error) {
     input_.bad_line(error);

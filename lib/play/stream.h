@@ -15,6 +15,7 @@ namespace synpo {
 
 // A line of a stream that begins where an episode of synpo-eval begins: what learns from it is not to be tested there.
 struct TestedStart {
+  std::string file;  // as messages name it
   uint64_t line, seed;
   int64_t episode;
 };

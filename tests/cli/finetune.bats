@@ -136,6 +136,11 @@ setup() {
     says "minibatches"
     fails 65 synpo-finetune ppo -q --init random </dev/null
     says "-p"
+    synpo-finetune ppo "${PPO[@]}" --steps 32 --save run.ckpt -o out.ckpt a.ckpt
+    fails 65 synpo-finetune ppo "${PPO[@]}" --steps 64 --init random -m mlp --resume run.ckpt
+    says "the run in the checkpoint has method synpo, not mlp"
+    fails 65 synpo-finetune ppo "${PPO[@]}" --steps 64 --init random -w kitchen --resume run.ckpt
+    says "the run in the checkpoint has world gridworld, not kitchen"
     fails 65 synpo-finetune ppo -q --resume a.ckpt
     says "stripped"
     synpo-finetune ppo "${PPO[@]}" --steps 32 <a.ckpt >part

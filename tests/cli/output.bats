@@ -55,6 +55,40 @@ for_writers() {
     fails 74 synpo-train "${TINY[@]}" -n 2 --save /dev/full --every 1 <e.jsonl
 }
 
+@test "a full disk has no line of the input" {
+    for i in 1 2 3 4 5 6 7 8; do cat e.jsonl; done >long.jsonl
+    OUT=/dev/full fails 74 synpo-gen-expert --relabel long.jsonl
+    ! says line || complain "$(cat "$BATS_TEST_TMPDIR/err")"
+}
+
+@test "a --save that cannot be written does not cost the training: its checkpoint is there, then 74" {
+    synpo-train "${TINY[@]}" -n 3 <e.jsonl >want
+    status=0
+    synpo-train "${TINY[@]:1}" -n 3 --save /dev/full --every 1 -o got <e.jsonl 2>err || status=$?
+    [ "$status" -eq 74 ]
+    cmp want got
+    [ "$(grep -c "cannot write '/dev/full': No space left on device: the run goes on$" err)" -ge 2 ]
+    tail -n 1 err | grep -qx "synpo-train: cannot write '/dev/full': No space left on device"
+}
+
+@test "a pipe that does not wait is written whole, at the pace of its reader" {
+    for command in "synpo-finetune strip a.ckpt" "synpo-gen-expert -n 300" "synpo-render map"; do
+        $command >want
+        python3 - "$command" >got <<'END'
+import os, shutil, subprocess, sys, time
+out, into = os.pipe()
+os.set_blocking(into, False)
+child = subprocess.Popen(sys.argv[1].split(), stdout=into)
+os.close(into)
+time.sleep(0.3)
+with os.fdopen(out, "rb") as read:
+    shutil.copyfileobj(read, sys.stdout.buffer)
+sys.exit(child.wait())
+END
+        cmp want got
+    done
+}
+
 @test "-o into a missing folder: 73, from every command" {
     into_nowhere() {
         fails 73 "$@" -o missing/out

@@ -42,6 +42,15 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt; }
     done
 }
 
+@test "resumed equals unbroken where trajectories break off before their episodes end" {
+    jq -c '([(.actions | length) - 1, 6] | min) as $n | (.actions, .rewards) |= .[:$n] |
+        .success = false | .terminated = false | .truncated = false' e.jsonl >cut.jsonl
+    options=("${TINY[@]}" --no-fresh-starts --running 512 --memory 60 -p pairs.tsv)
+    synpo-train "${options[@]}" -n 13 <cut.jsonl >unbroken
+    synpo-train "${options[@]}" -n 12 <cut.jsonl >part
+    synpo-train -q --resume part -n 13 <cut.jsonl | cmp - unbroken
+}
+
 @test "a resumed run continues its log" {
     synpo-train "${TINY[@]}" -n 6 --log unbroken.tsv --report 1 <e.jsonl >/dev/null
     synpo-train "${TINY[@]}" -n 3 --log log.tsv --report 1 <e.jsonl >part

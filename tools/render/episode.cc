@@ -36,11 +36,12 @@ namespace {
 Trajectory read_trajectory(Input& input, int64_t line) {
   TrajectoryLines lines(input);
   std::string text;
-  while (input.line_number() < uint64_t(line))
-    if (!lines.next(text))
-      fail(Exit::kData, input.name(), ": it ends after ", counted(int64_t(input.line_number()), "line"),
-           ", before line ", line);
-  if (input.line_number() > uint64_t(line))
+  bool more = true;
+  while (more && input.line_number() < uint64_t(line)) more = lines.next(text);
+  if (input.line_number() < uint64_t(line))
+    fail(Exit::kData, input.name(), ": it ends after ", counted(int64_t(input.line_number()), "line"), ", before line ",
+         line);
+  if (!more || input.line_number() > uint64_t(line))
     fail(Exit::kData, input.name(), ": line ", line, ": found the end of a stream, expected a trajectory");
   try {
     return parse_trajectory(text, kStepLimit);

@@ -89,8 +89,11 @@ Descriptor open_in_place(const std::string& path) {
 bool write_all(int fd, std::string_view bytes) {
   for (size_t done = 0; done < bytes.size();) {
     const ssize_t put = ::write(fd, bytes.data() + done, bytes.size() - done);
-    if (put < 0 && errno != EINTR) return false;
     if (put > 0) done += size_t(put);
+    if (put >= 0 || errno == EINTR) continue;
+    if (errno != EAGAIN && errno != EWOULDBLOCK) return false;
+    pollfd room = {fd, POLLOUT, 0};
+    poll(&room, 1, -1);
   }
   return true;
 }

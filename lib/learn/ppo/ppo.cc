@@ -250,6 +250,10 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   if (!file.has("train/ppo/position"))
     fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
   options_.check_same(checkpoint);
+  naming_file(checkpoint, [&] { load_training_state(file); });
+}
+
+void Ppo::load_training_state(const SafeTensors& file) {
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_->parameters(), value_parameters_.data());
   get_tensors(file, "train/ppo/value/v/", value_->parameters(), value_v_.data());

@@ -55,6 +55,7 @@ class Ppo {
   const PpoLosses& first_minibatch() const { return first_; }
 
  private:
+  void load_training_state(const SafeTensors& file);
   struct Rollout {
     std::vector<uint8_t> observations;
     std::vector<int> env, task, action;

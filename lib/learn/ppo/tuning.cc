@@ -39,6 +39,10 @@ Tuning::Tuning(const TuningSettings& s, const Options& given, Parallel& parallel
     : parallel_(parallel), steps_(s.steps) {
   const bool resumes = !s.resume.empty(), fresh = s.random && !resumes;
   const Checkpoint from = fresh ? Checkpoint() : load_checkpoint(resumes ? s.resume : s.checkpoint);
+  if (resumes && given.given("method") && s.method != from.method)
+    fail(Exit::kData, "the run in the checkpoint has method ", from.method, ", not ", s.method);
+  if (const std::string kind = s.world.substr(0, s.world.find(':')); resumes && !kind.empty() && kind != from.world)
+    fail(Exit::kData, "the run in the checkpoint has world ", from.world, ", not ", kind);
   PpoOptions ppo = s.ppo;
   ppo.take_losses(from, given);
   if (fresh)

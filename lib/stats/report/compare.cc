@@ -30,11 +30,12 @@ struct Side {
       if (!row.env_hash.empty()) hashes.emplace(row.env, row.env_hash);
     }
   }
-  // Where a row of the other side that cannot be compared with this one is counted; null when it can.
-  LeftOut Comparison::*lacks(const MatrixRow& row, bool any_start) const {
+  // Where a row of the side `from` that cannot be compared with this one is counted; null when it can.
+  LeftOut Comparison::*lacks(const Side& from, const MatrixRow& row, bool any_start) const {
     if (!pairs.contains(pair_key(row))) return &Comparison::only_one;
-    const auto hash = hashes.find(row.env);
-    if (hash != hashes.end() && !row.env_hash.empty() && hash->second != row.env_hash) return &Comparison::other_env;
+    // Rows that do not say their environment's hash are of that which others of their side say.
+    const auto hash = hashes.find(row.env), own = from.hashes.find(row.env);
+    if (hash != hashes.end() && own != from.hashes.end() && hash->second != own->second) return &Comparison::other_env;
     if (!standings.contains(standing_key(row)))
       return row.is_new || standings.contains(concat(pair_key(row), '\t', name_of(Standing::kNew)))
                  ? &Comparison::new_to_one
@@ -50,10 +51,10 @@ std::pair<Matrix, Matrix> common_rows(const Matrix& a, const Matrix& b, bool any
   std::unordered_map<std::string, LeftOut Comparison::*> lost;
   std::vector<std::pair<std::string, LeftOut Comparison::*>> lost_rows;
   std::unordered_set<std::string> kept;
-  const auto choose = [&](const Matrix& matrix, const Side& other) {
+  const auto choose = [&](const Matrix& matrix, const Side& own, const Side& other) {
     Matrix part;
     for (const MatrixRow& row : matrix.rows) {
-      if (const auto reason = other.lacks(row, any_start)) {
+      if (const auto reason = other.lacks(own, row, any_start)) {
         lost.try_emplace(pair_key(row), reason);
         lost_rows.emplace_back(pair_key(row), reason);
       } else {
@@ -63,7 +64,8 @@ std::pair<Matrix, Matrix> common_rows(const Matrix& a, const Matrix& b, bool any
     }
     return part;
   };
-  std::pair<Matrix, Matrix> common{choose(a, Side(b)), choose(b, Side(a))};
+  const Side of_a(a), of_b(b);
+  std::pair<Matrix, Matrix> common{choose(a, of_a, of_b), choose(b, of_b, of_a)};
   for (const auto& [pair, reason] : lost)
     if (!kept.contains(pair)) ++(result.*reason).pairs;
   for (const auto& [pair, reason] : lost_rows)

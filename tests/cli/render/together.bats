@@ -49,6 +49,8 @@ setup() { set_up pairs.tsv e.jsonl m.tsv ended.jsonl; }
     synpo-render episode --ansi --line 5 both.jsonl | cmp - <(synpo-render episode --ansi e.jsonl)
     fails 65 synpo-render episode --ansi --line 4 both.jsonl
     says "both.jsonl: line 4: found the end of a stream, expected a trajectory"
+    fails 65 synpo-render episode --ansi --line 4 ended.jsonl
+    says "ended.jsonl: line 4: found the end of a stream, expected a trajectory"
     fails 65 synpo-render episode --ansi --line 5 ended.jsonl
     says "ended.jsonl: it ends after 4 lines, before line 5"
 }

@@ -65,6 +65,12 @@ TRAINING=(synpo-train --batch-states 64 --fill 20 --running 64 --memory 30)
     [ "$(grep -o -- --resume <<<"$command" | wc -l)" -eq 1 ]
 }
 
+@test "a limit in time that was not told in updates yet is part of it" {
+    "${TRAINING[@]}" -q -n 2 e.jsonl >a2.ckpt
+    interrupts synpo-train --resume a2.ckpt --time 1h --save run.ckpt -o out.ckpt e.jsonl
+    [ "$(described run.ckpt .updates)" -ge 50 ] || command_of synpo-train | grep -q -- '--time 1h .*--resume run.ckpt'
+}
+
 @test "nothing of it without --save or with -q" {
     interrupts "${TRAINING[@]}" -n 4000 -o out.ckpt e.jsonl
     [ -z "$(command_of synpo-train)" ]

@@ -184,6 +184,22 @@ TEST(Compare, SaysHowManyChanceAloneWouldMake) {
   EXPECT_NE(text.find("0 of 400 leave out 0; by chance alone it would be about 3.6,"), std::string::npos) << text;
 }
 
+TEST(Compare, RowsThatDoNotSayTheirEnvironmentAreOfTheOneThatOthersSay) {
+  MatrixSource a{"a", matrix({row("a1", 1, "e", "t", true, 5), row("a1", 1, "f", "t", true, 5),
+                              row("a2", 2, "e", "t", true, 6), row("a2", 2, "f", "t", true, 6)})};
+  MatrixSource b = a;
+  for (MatrixRow& row : a.matrix.rows)
+    if (row.seed == 1) row.env_hash = row.env == "e" ? "0000000000000001" : "0000000000000002";
+  for (MatrixRow& row : b.matrix.rows) row.env_hash = row.env == "e" ? "0000000000000003" : "0000000000000002";
+  for (const Comparison& c : {compare(a, b, false), compare(b, a, false)}) {
+    ASSERT_EQ(c.pairs.size(), 1u);
+    EXPECT_EQ(c.pairs[0].env, "f");
+    EXPECT_EQ(c.pairs[0].n_a, c.pairs[0].n_b);
+    EXPECT_EQ(c.other_env.pairs, 1);
+    EXPECT_EQ(c.other_env.rows, 0);
+  }
+}
+
 TEST(Compare, RefusesWhatCannotBeCompared) {
   const MatrixSource a{"a.tsv", matrix({row("a", 1, "e", "t", true, 5)})};
   MatrixSource b = a;
