@@ -64,7 +64,7 @@ for world, (state, lanes) in enumerate([("grid", "ppo"), ("kitchen", None)]):
 # Plans of kitchens, from the checkpoint that holds them.
 header, _ = read(work / "kitchen.ckpt")
 for env in json.loads(header["__metadata__"]["envs"])[:4]:
-    (out / "kitchen_plan" / env["name"]).write_text(env["content"])
+    (out / "kitchen_plan" / env["name"]).write_text(env["content"], encoding="utf-8")
 
 # A scene in which everything looks the same: one row of features.
 for path in (work / "scenes").glob("*.scene.safetensors"):

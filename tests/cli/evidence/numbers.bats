@@ -21,6 +21,19 @@ caught() {
     [ "$("$ROOT/scripts/numbers" --list | wc -l)" -gt 30 ]
 }
 
+@test "numbers: the texts are UTF-8 in every locale, and so is the list" {
+    export LC_ALL=C PYTHONUTF8=0 # ASCII
+    "$ROOT/scripts/numbers" --list >list
+    grep -q † list
+}
+
+@test "numbers: a single run has no standard deviation, and counts have neither that nor a mean" {
+    for claim in '{sd unseen forty2}' '{sd all k/n forty2,forty3}' '{mean all k/n forty2,forty3}'; do
+        echo "RESULTS.md: $claim" >copy/lab/claims.txt
+        caught "numbers: lab/claims.txt asks for $claim, which has no "
+    done
+}
+
 @test "numbers: a wrong number in any of the texts" {
     for text in README.md RESULTS.md lab/book.md; do
         cp copy/$text kept
