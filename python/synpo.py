@@ -23,6 +23,7 @@ synpo-play(5). A file that is not as they say is refused with ValueError, which 
 import json
 import math
 import os
+import re
 import struct
 import subprocess
 
@@ -41,25 +42,116 @@ __all__ = ["read_matrix", "rates", "read_log", "read_trajectories", "Checkpoint"
            "load_policy", "export_onnx", "Server", "Env", "BatchEnv"]
 
 
+# --- what all formats have -----------------------------------------------------------------------------------
+
+_MOST_LINE = 2**24  # bytes
+_CONTROL = re.compile("[\x00-\x1f\x7f-\x9f]")
+
+
+def _expect(holds, what, found, expected):
+    if not holds:
+        raise ValueError(f"{what}: found {json.dumps(found)[:80]}, expected {expected}")
+
+
+def _is_name(value):
+    return isinstance(value, str) and 1 <= len(value.encode("utf-8")) <= 255 and not _CONTROL.search(value)
+
+
+def _is_hash(value):
+    return isinstance(value, str) and re.fullmatch("[0-9a-f]{16}", value)
+
+
+def _is_whole(value, low, high):
+    return type(value) is int and low <= value <= high
+
+
+def _are_whole(values, low, high):
+    return (isinstance(values, list) and set(map(type, values)) <= {int} and
+            low <= min(values, default=low) and max(values, default=high) <= high)
+
+
+# Python reads more than the formats have: 1_000, blanks, digits of other scripts, infinity.
+_WHOLE, _REAL = set("-0123456789"), set("-+.0123456789eE")
+
+
+def _whole(text, low, high):
+    number = int(text) if _WHOLE.issuperset(text) else None
+    if number is None or not low <= number <= high:
+        raise ValueError(text)
+    return number
+
+
+def _real(text, low=-math.inf, high=math.inf):
+    number = float(text) if _REAL.issuperset(text) and not text.startswith("+") else math.nan
+    if not (low <= number <= high and abs(number) < math.inf):
+        raise ValueError(text)
+    return number
+
+
+def _no_number(text):
+    raise ValueError(f"found {text}, which is no number of JSON")
+
+
+def _object(members):
+    found = {}
+    for name, value in members:
+        if name in found:
+            raise ValueError(f"the name {json.dumps(name)} twice in one object")
+        found[name] = value
+    return found
+
+
+def _look_through(value, levels):
+    inside = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    kinds = set(map(type, inside))
+    if kinds and levels == 0:
+        raise RecursionError
+    if float in kinds and (math.inf in inside or -math.inf in inside):
+        raise ValueError("a number that is too large")
+    if dict in kinds or list in kinds:
+        for one in inside:
+            _look_through(one, levels - 1)
+
+
+def _parse_json(text, levels=8):
+    """As json.loads(), but a ValueError for all that the programs refuse: NaN, numbers that are too large, a name
+    twice in an object, halves of characters, and what is nested in more levels."""
+    try:
+        value = json.loads(text, parse_constant=_no_number, object_pairs_hook=_object)
+        _look_through(value, levels)
+    except RecursionError:
+        raise ValueError("nested too deep") from None
+    if "\\u" in text:
+        json.dumps(value, ensure_ascii=False).encode("utf-8")
+    return value
+
+
 # --- tables ------------------------------------------------------------------------------------------------
 
 def _read_table(path):
     """The header and the columns of a tab-separated table, as texts, and what comes after the last LF."""
     with open(path, "rb") as file:
-        data = file.read()
+        data, header_ends, cut_off = file.read().rpartition(b"\n")
+    if not header_ends:
+        raise ValueError(f"{path}: no header line")
     try:
         lines = data.decode("utf-8").split("\n")
     except UnicodeDecodeError as error:
         number = data.count(b"\n", 0, error.start) + 1
         raise ValueError(f"{path}: line {number}: found invalid UTF-8 ({error.reason})") from None
-    if len(lines) < 2:
-        raise ValueError(f"{path}: no header line")
-    cut_off = lines.pop()
-    if "\r" in lines[0]:
-        raise ValueError(f"{path}: line 1: ends in CR LF, expected LF alone")
+    for number, line in enumerate(lines, 1):
+        if line.endswith("\r"):
+            raise ValueError(f"{path}: line {number}: ends in CR LF, expected LF alone")
+        control = _CONTROL.search(line.replace("\t", " "))
+        if control:
+            raise ValueError(f"{path}: line {number}: found the control character {control[0]!r}, expected UTF-8 text")
+        if len(line) > _MOST_LINE:
+            raise ValueError(f"{path}: line {number}: longer than {_MOST_LINE} bytes")
     header = lines[0].split("\t")
     if header[0].startswith("\ufeff"):
         raise ValueError(f"{path}: line 1: found a byte order mark, expected none")
+    if len(header) > 1000:
+        raise ValueError(f"{path}: line 1: found {len(header)} columns, expected at most 1000")
     for name in header:
         if header.count(name) > 1 or not name:
             raise ValueError(f"{path}: line 1: found the column '{name}', expected names, each of them once")
@@ -67,92 +159,106 @@ def _read_table(path):
     for number, row in enumerate(rows, 2):
         if len(row) != len(header):
             raise ValueError(f"{path}: line {number}: found {len(row)} fields, expected {len(header)}")
-        if "\r" in row[-1]:
-            raise ValueError(f"{path}: line {number}: ends in CR LF, expected LF alone")
     return header, list(zip(*rows)) if rows else [()] * len(header), cut_off
 
 
-# Python reads more than the formats have: 1_000, blanks, digits of other scripts, infinity.
-_WHOLE, _REAL = set("-0123456789"), set("-+.0123456789eE")
-
-
-def _number(field, kind, characters):
-    number = kind(field) if characters.issuperset(field) and not field.startswith("+") else None
-    if number is None or not -2**63 <= number < 2**64 and kind is int or abs(number) == np.inf:
-        raise ValueError(field)
-    return number
-
-
-def _numbers(path, name, fields, kind, characters, missing, expected):
-    """The numbers of a column; NaN where a field is `missing`."""
-    if kind is int and characters.issuperset("".join(fields)) and "" not in fields:
+def _values(path, name, fields, read, expected):
+    """What `read` makes of the fields of a column; it refuses one with ValueError."""
+    known = {}
+    for field in dict.fromkeys(fields):
         try:
-            numbers = list(map(int, fields))
-            if -2**63 <= min(numbers, default=0) and max(numbers, default=0) < 2**64:
-                return numbers
+            known[field] = read(field)
         except ValueError:
-            pass  # the line is found below
-    numbers = []
-    for number, field in enumerate(fields, 2):
-        try:
-            numbers.append(np.nan if field == missing else _number(field, kind, characters))
-        except ValueError:
-            raise ValueError(f"{path}: line {number}, column '{name}': found '{field}', expected {expected}") from None
-    return numbers
+            raise ValueError(f"{path}: line {fields.index(field) + 2}, column '{name}': found '{field}', "
+                             f"expected {expected}") from None
+    return [known[field] for field in fields]
 
 
-_MATRIX_TEXTS = {"run", "world", "method", "env", "task", "part", "env_hash"}
-_MATRIX_REALS = {"reward", "temperature"}
-_MATRIX_COUNTS = {"window", "seed", "updates", "eval_seed", "first_episode", "seen", "episodes", "successes", "wrong",
-                  "timeouts", "length", "new"}
+def _text(holds):
+    def read(field):
+        if not holds(field):
+            raise ValueError(field)
+        return field
+    return read
+
+
+def _whole_column(low, high):
+    return lambda field: _whole(field, low, high), np.int64, f"a whole number from {low} to {high}"
+
+
+# How a field is read, the type of the column, and what is expected in it.
+_COUNT, _LONG, _FLAG = _whole_column(0, 10**12), _whole_column(0, 2**63 - 1), _whole_column(0, 1)
+_MATRIX_COLUMNS = {
+    "window": _COUNT, "first_episode": _COUNT, "episodes": _whole_column(1, 10**12), "successes": _COUNT,
+    "wrong": _COUNT, "timeouts": _COUNT, "length": _COUNT, "seed": _LONG, "updates": _LONG, "eval_seed": _LONG,
+    "seen": _FLAG, "new": _FLAG,
+    "reward": (lambda field: _real(field, -1e15, 1e15) if field else math.nan, float,
+               "a number from -1e15 to 1e15, or nothing"),
+    # -0 is 0: one run.
+    "temperature": (lambda field: _real(field, 0) + 0.0 if field else math.nan, float,
+                    "a number, at least 0, or nothing"),
+    "env": (_text(_is_name), object, "a name of 1 to 255 bytes"),
+    "task": (_text(_is_name), object, "a name of 1 to 255 bytes"),
+    "method": (_text(lambda field: not field or _is_name(field)), object, "a name of at most 255 bytes"),
+    "part": (_text({"P", "Q", "rest", ""}.__contains__), object, "P, Q, rest or nothing"),
+}
 
 
 def read_matrix(path):
-    """A success matrix as {column: array}: counts are int64 (seeds of 2^63 and more uint64), reward and temperature
-    float64 with NaN where the field is empty, all else text. pandas.DataFrame() takes it as it is."""
+    """A success matrix as {column: array}: counts are int64, reward and temperature float64 with NaN where the field is
+    empty, all else text. pandas.DataFrame() takes it as it is."""
     header, columns, cut_off = _read_table(path)
     if cut_off:
         raise ValueError(f"{path}: the last line has no end")
     for column in ("env", "task", "episodes", "successes"):
         if column not in header:
             raise ValueError(f"{path}: no column '{column}'")
+    if not 1 <= len(columns[0]) <= 10**6:
+        raise ValueError(f"{path}: found a header and {len(columns[0])} rows, expected 1 to 1000000")
     matrix = {}
     for column, fields in zip(header, columns):
-        if column in _MATRIX_REALS:
-            matrix[column] = np.array(_numbers(path, column, fields, float, _REAL, "", "a number or nothing"), float)
-        elif column in _MATRIX_COUNTS:
-            values = _numbers(path, column, fields, int, _WHOLE, None, "a whole number")
-            matrix[column] = np.array(values, np.uint64 if max(values, default=0) >= 2**63 else np.int64)
-        else:
-            matrix[column] = np.array(fields, dtype=object)
-    _check_matrix(path, matrix)
+        read, kind, expected = _MATRIX_COLUMNS.get(column, (str, object, ""))
+        matrix[column] = np.array(_values(path, column, fields, read, expected), kind)
+    _check_rows(path, matrix)
     return matrix
 
 
-def _check_matrix(path, matrix):
-    def hold(column, wrong, expected):
-        if column in matrix and wrong.any():
-            row = int(wrong.argmax())
-            raise ValueError(f"{path}: line {row + 2}, column '{column}': found '{matrix[column][row]}', "
-                             f"expected {expected}")
+def _check_rows(path, matrix):
+    missing = np.zeros(len(matrix["env"]), np.int64)
+    ends = sum(matrix.get(column, missing) for column in ("successes", "wrong", "timeouts"))
+    for wrong, fault in (
+            (ends > matrix["episodes"], "successes, wrong picks and timeouts that are more than the row's episodes"),
+            (matrix.get("seen", missing) & matrix.get("new", missing), "a pair that is both seen and new")):
+        if wrong.any():
+            raise ValueError(f"{path}: line {int(wrong.argmax()) + 2}: found {fault}")
+    line_of = {}
+    for line, row in enumerate(zip(_runs_and_pairs(matrix), matrix.get("first_episode", missing).tolist()), 2):
+        if line_of.setdefault(row, line) != line:
+            raise ValueError(f"{path}: line {line}: found the run, the pair and the first episode of line "
+                             f"{line_of[row]} once more")
 
-    for column in _MATRIX_COUNTS & matrix.keys():
-        hold(column, matrix[column] < 0, "at least 0")
-    for column in ("seen", "new"):
-        hold(column, matrix.get(column, np.zeros(0)) > 1, "0 or 1")
-    for column in ("env", "task"):
-        hold(column, matrix[column] == "", "a name")
-    hold("episodes", matrix["episodes"] < 1, "at least 1")
-    ends = sum((matrix[column].astype(float) for column in ("wrong", "timeouts") if column in matrix),
-               matrix["successes"].astype(float))
-    hold("successes", ends > matrix["episodes"], "with wrong picks and timeouts no more than the row's episodes")
-    with np.errstate(invalid="ignore"):
-        hold("temperature", matrix.get("temperature", np.zeros(0)) < 0, "at least 0")
+
+def _runs_and_pairs(matrix):
+    """What the episodes of each row are of: run, temperature, eval_seed and pair."""
+    def column(name):
+        return matrix[name].tolist() if name in matrix else [None] * len(matrix["env"])
+
+    settings = zip(*map(column, ("world", "window", "method", "seed", "updates")))
+    runs = [run or setting for run, setting in zip(column("run"), settings)]
+    return zip(runs, map(str, column("temperature")), *map(column, ("eval_seed", "env", "task")))
 
 
 def rates(matrix):
     """Success rates of a matrix as an array [tasks, envs], with the names of both in the order of their appearance;
-    NaN where a pair has no row. Rows of one pair are added up, whatever their runs."""
+    NaN where a pair has no row. Rows of one pair are added up, whatever their runs; a ValueError where rows of one run
+    and eval_seed share episodes."""
+    first = np.asarray(matrix.get("first_episode", np.zeros(len(matrix["env"]), np.int64)))
+    rows, counted = list(_runs_and_pairs(matrix)), {}
+    for row in np.argsort(first, kind="stable"):
+        if first[row] < counted.get(rows[row], 0):
+            raise ValueError(f"episode {first[row]} of the pair '{matrix['env'][row]}', '{matrix['task'][row]}' twice "
+                             "in one run")
+        counted[rows[row]] = first[row] + matrix["episodes"][row]
     envs, tasks = list(dict.fromkeys(matrix["env"])), list(dict.fromkeys(matrix["task"]))
     successes, episodes = np.zeros((2, len(tasks), len(envs)))
     at = [tasks.index(task) for task in matrix["task"]], [envs.index(env) for env in matrix["env"]]
@@ -162,40 +268,96 @@ def rates(matrix):
         return successes / episodes, tasks, envs
 
 
+def _log_column(name):
+    if name == "update":
+        return _LONG
+    if name.endswith("success") or name.startswith("right_") or name == "wrong":
+        return lambda field: math.nan if field == "NA" else _real(field, 0, 1), float, "a rate from 0 to 1, or NA"
+    return lambda field: math.nan if field == "NA" else _real(field), float, "a number or NA"
+
+
 def read_log(path):
-    """A run log as {column: float64 array}, NaN where it has NA. Of an update that stands there twice, as after a
-    resumption, the later row counts; a last row that is cut off is left out."""
+    """A run log as {column: float64 array}, NaN where it has NA. A resumed run does updates again: of all rows from
+    such an update on, the later ones count. A last row that is cut off is left out."""
     header, columns, _ = _read_table(path)
-    table = [np.array(_numbers(path, column, fields, float, _REAL, "NA", "a number or NA"), float)
-             for column, fields in zip(header, columns)]
-    last = {update: row for row, update in enumerate(table[0])}
-    return {column: values[sorted(last.values())] for column, values in zip(header, table)}
+    if "update" not in header:
+        raise ValueError(f"{path}: line 1: no column 'update'")
+    log = {}
+    for column, fields in zip(header, columns):
+        read, _, expected = _log_column(column)
+        log[column] = _values(path, column, fields, read, expected)
+    updates, kept = log["update"], []
+    for row, update in enumerate(updates):
+        while kept and updates[kept[-1]] >= update:
+            kept.pop()
+        kept.append(row)
+    return {column: np.array(values, float)[kept] for column, values in log.items()}
 
 
 # --- trajectories ------------------------------------------------------------------------------------------
 
+def _is_start(value):
+    return (isinstance(value, dict) and len(value) <= 64 and
+            all(_are_whole(place, -2**20, 2**20) and len(place) == 2 for place in value.values()))
+
+
+def _are_actions(value):
+    return isinstance(value, list) and 1 <= len(value) <= 300 and _are_whole(value, 0, 255)
+
+
+def _are_rewards(value):
+    if not isinstance(value, list) or not set(map(type, value)) <= {int, float}:
+        return False
+    cents = 100 * np.array(value, float)
+    return (np.abs(cents) < 1e6).all() and (np.abs(cents - np.rint(cents)) <= 1e-3).all()
+
+
+def _are_scores(value):
+    return isinstance(value, list) and all(
+        isinstance(row, list) and len(row) == len(value[0]) and set(map(type, row)) <= {int, float, type(None)}
+        for row in value)
+
+
+def _from_to(low, high):
+    return lambda value: _is_whole(value, low, high), f"a whole number from {low} to {high}"
+
+
+_NAME = _is_name, "a name of 1 to 255 bytes without control characters"
+_ACTIONS = _are_actions, "an array of 1 to 300 whole numbers from 0 to 255"
+_SCORES = _are_scores, "an array of as many numbers for each step"
+_TRUTH = lambda value: isinstance(value, bool), "true or false"
+# What a field must be; those of a step stand first.
 _TRAJECTORY_ARRAYS = {"actions": np.int64, "labels": np.int64, "rewards": np.float64, "scores": np.float32,
                       "probabilities": np.float64}
-_TRAJECTORY_FIELDS = ("world", "rules", "env", "task", "env_hash", "window", "seed", "episode", "start", "rewards",
-                      "success", "terminated", "truncated")
+_TRAJECTORY_FIELDS = {
+    "actions": _ACTIONS, "labels": _ACTIONS, "rewards": (_are_rewards, "an array of multiples of 0.01"),
+    "scores": _SCORES, "probabilities": _SCORES,
+    "world": _NAME, "rules": _from_to(0, 2**31 - 1), "env": _NAME, "task": _NAME,
+    "env_hash": (_is_hash, "16 hexadecimal digits"), "window": _from_to(0, 1000), "seed": _from_to(0, 2**64 - 1),
+    "episode": _from_to(0, 2**63 - 1), "start": (_is_start, "an object of places [row, column]"),
+    "success": _TRUTH, "terminated": _TRUTH, "truncated": _TRUTH,
+}
 
 
-def _no_number(text):
-    raise ValueError(f"found {text}, which is no number of JSON")
-
-
-def _parse_json(text):
-    """As json.loads(), but all that is not JSON is a ValueError: NaN, and what is nested too deep to read."""
-    try:
-        return json.loads(text, parse_constant=_no_number)
-    except RecursionError:
-        raise ValueError("nested too deep") from None
+def _check_trajectory(episode):
+    """Refuses what is not as synpo-trajectory(5) has it, and makes arrays."""
+    episode.setdefault("labels", episode["actions"])
+    for field, (holds, expected) in _TRAJECTORY_FIELDS.items():
+        if field in ("scores", "probabilities") and field not in episode:
+            continue
+        _expect(holds(episode[field]), f"field '{field}'", episode[field], expected)
+        if field in _TRAJECTORY_ARRAYS and len(episode[field]) != len(episode["actions"]):
+            raise ValueError(f"'{field}' and 'actions' differ in length")
+    for field, kind in _TRAJECTORY_ARRAYS.items():
+        if field in episode:
+            episode[field] = np.array(episode[field], kind)
 
 
 def read_trajectories(source):
     """The episodes of a file (by its name, or an open one) one by one, each the dict of its line with arrays for
     actions, labels, rewards and, where they were recorded, scores (float32) and probabilities. Labels are always
-    there. A stream that says its end is refused there where something is missing."""
+    there. A stream that says its end is refused there where something is missing. Episodes are not played: whether the
+    world has such a start, such actions and such rewards, `synpo-gen-expert --relabel` knows."""
     if isinstance(source, (str, os.PathLike)):
         with open(source, "rb") as file:
             yield from read_trajectories(file)
@@ -204,25 +366,22 @@ def read_trajectories(source):
     count, said = 0, None
     for number, line in enumerate(source, 1):
         try:
-            episode = _parse_json(line.decode("utf-8") if isinstance(line, bytes) else line)
+            text = (line.decode("utf-8") if isinstance(line, bytes) else line).removesuffix("\n")
+            if len(text) > _MOST_LINE:
+                raise ValueError(f"longer than {_MOST_LINE} bytes")
+            episode = _parse_json(text)
             if not isinstance(episode, dict) or episode.get("format") not in ("synpo-trajectory", "synpo-end"):
                 raise ValueError("not a synpo trajectory")
-            if episode["version"] != 1:
+            if not _is_whole(episode["version"], 1, 1):
                 raise ValueError(f"version {episode['version']}, this reader knows 1")
             if episode["format"] == "synpo-end":
-                said = (said or 0) + int(episode["trajectories"])
+                most = 2**63 - 1 - (said or 0)
+                _expect(_is_whole(episode["trajectories"], 0, most), "field 'trajectories'",
+                        episode["trajectories"], f"a whole number from 0 to {most}")
+                said = (said or 0) + episode["trajectories"]
                 continue
             count += 1
-            episode.setdefault("labels", episode["actions"])
-            for field, kind in _TRAJECTORY_ARRAYS.items():
-                if field in episode:
-                    if kind is np.int64 and not all(type(value) is int for value in episode[field]):
-                        raise ValueError(f"'{field}' has something else than whole numbers")
-                    episode[field] = np.array(episode[field], kind)
-                    if len(episode[field]) != len(episode["actions"]):
-                        raise ValueError(f"'{field}' and 'actions' differ in length")
-            for field in _TRAJECTORY_FIELDS:
-                episode[field]
+            _check_trajectory(episode)
         except (ValueError, TypeError, OverflowError) as error:
             raise ValueError(f"{name}: line {number}: {error}") from None
         except KeyError as error:
@@ -236,6 +395,7 @@ def read_trajectories(source):
 
 _TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "I32": "<i4", "U64": "<u8", "U8": "u1"}
 _MOST_HEADER = 100_000_000
+_MOST_BYTES = 2**34  # of a tensor
 
 
 def read_safetensors(path):
@@ -248,36 +408,73 @@ def read_safetensors(path):
         if not 2 <= size <= _MOST_HEADER:
             raise ValueError(f"{path}: not a safetensors file (header length {size})")
         text = file.read(size)
+        if len(text) < size:
+            raise ValueError(f"{path}: it ends at byte {8 + len(text)}, in the middle of the header")
         try:
-            header = _parse_json(text.decode("utf-8"))
+            header = _parse_json(text.decode("utf-8"), 4)
+            _expect(isinstance(header, dict), "the header", header, "an object")
             metadata = header.pop("__metadata__", {})
-            if not all(isinstance(word, str) for word in metadata.values()):
-                raise ValueError("metadata that is no text")
-        except (ValueError, AttributeError, TypeError) as error:
+            _expect(isinstance(metadata, dict) and all(isinstance(word, str) for word in metadata.values()),
+                    "metadata", metadata, "an object of strings")
+        except ValueError as error:
             raise ValueError(f"{path}: not a safetensors file ({error})") from None
         data = file.read()
-    tensors, at = {}, 0
     try:
-        for name, entry in sorted(header.items(), key=lambda item: item[1]["data_offsets"]):
-            begin, end = entry["data_offsets"]
-            if entry["dtype"] not in _TYPES:
-                raise ValueError(f"{path}: tensor '{name}': type {entry['dtype']}")
-            if begin != at or not begin <= end <= len(data):
-                raise ValueError(f"{path}: tensor '{name}': found bytes {begin} to {end}, expected {at} to {len(data)}")
-            if not isinstance(entry["shape"], list) or not all(type(n) is int and n >= 0 for n in entry["shape"]):
-                raise TypeError(entry["shape"])
-            if math.prod(entry["shape"]) * np.dtype(_TYPES[entry["dtype"]]).itemsize != end - begin:
-                raise ValueError(f"{path}: tensor '{name}': found {end - begin} bytes for the shape {entry['shape']}")
-            array = np.frombuffer(data[begin:end], _TYPES[entry["dtype"]]).reshape(entry["shape"])
-            if entry["dtype"] == "BF16":
-                array = (array.astype("<u4") << 16).view("<f4")
-            tensors[name] = array
-            at = end
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"{path}: the header is not as safetensors has it ({error!r})") from None
+        return metadata, _tensors(header, data)
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+
+
+def _tensors(header, data):
+    for name, entry in header.items():
+        what = f"tensor '{name}'"
+        _expect(isinstance(entry, dict) and {"dtype", "shape", "data_offsets"} <= entry.keys(), what, entry,
+                "dtype, shape and data_offsets")
+        _expect(isinstance(entry["dtype"], str) and entry["dtype"] in _TYPES, what + ": type", entry["dtype"],
+                ", ".join(_TYPES))
+        _expect(_are_whole(entry["shape"], 0, _MOST_BYTES) and len(entry["shape"]) <= 8, what + ": shape",
+                entry["shape"], "at most 8 whole numbers")
+        _expect(_are_whole(entry["data_offsets"], 0, 2**64 - 1) and len(entry["data_offsets"]) == 2,
+                what + ": data_offsets", entry["data_offsets"], "two whole numbers")
+    tensors, at = {}, 0
+    for name, entry in sorted(header.items(), key=lambda item: item[1]["data_offsets"]):
+        begin, end = entry["data_offsets"]
+        if begin != at or not begin <= end <= len(data):
+            raise ValueError(f"tensor '{name}': found bytes {begin} to {end}, expected {at} to {len(data)}")
+        if math.prod(entry["shape"]) * np.dtype(_TYPES[entry["dtype"]]).itemsize != end - begin:
+            raise ValueError(f"tensor '{name}': found {end - begin} bytes for the shape {entry['shape']}")
+        array = np.frombuffer(data[begin:end], _TYPES[entry["dtype"]]).reshape(entry["shape"])
+        if entry["dtype"] == "BF16":
+            array = (array.astype("<u4") << 16).view("<f4")
+        tensors[name] = array
+        at = end
     if at != len(data):
-        raise ValueError(f"{path}: bytes follow the last tensor")
-    return metadata, tensors
+        raise ValueError("bytes follow the last tensor")
+    return tensors
+
+
+def _are_names(value):
+    return isinstance(value, list) and all(map(_is_name, value))
+
+
+def _are_envs(value):
+    return isinstance(value, list) and all(
+        isinstance(env, dict) and {"name", "hash", "content"} <= env.keys() and _is_name(env["name"]) and
+        _is_hash(env["hash"]) and all(isinstance(word, str) for word in env.values()) for env in value)
+
+
+_METADATA_WHOLE = {"version": 2**63 - 1, "rules": 2**63 - 1, "window": 2**63 - 1, "updates": 2**53, "states": 2**53,
+                   "seed": 2**63 - 1}
+_METADATA_JSON = {
+    "shape": (lambda value: isinstance(value, dict) and _are_whole(list(value.values()), -2**63, 2**64 - 1),
+              "an object of whole numbers"),
+    "options": (lambda value: isinstance(value, dict) and all(isinstance(word, str) for word in value.values()),
+                "an object of strings"),
+    "tasks": (_are_names, "an array of names"),
+    "seen": (lambda value: isinstance(value, list) and all(_are_names(pair) and len(pair) == 2 for pair in value),
+             "an array of pairs of names"),
+    "envs": (_are_envs, "an array of objects with name, hash and content"),
+}
 
 
 class Checkpoint:
@@ -290,22 +487,29 @@ class Checkpoint:
             raise ValueError(f"{path}: not a synpo checkpoint")
         self.path, self.tensors, self.metadata = path, tensors, dict(metadata)
         try:
-            for key in ("version", "rules", "window", "updates", "states", "seed"):
-                self.metadata[key] = int(metadata[key])
-            for key in ("shape", "options", "tasks", "envs", "seen"):
-                self.metadata[key] = _parse_json(metadata[key])
-            self.envs = [env["name"] for env in self.metadata["envs"]]
-            self.method, self.world = metadata["method"], metadata["world"]
-            self.seen = [(env, task) for env, task in self.metadata["seen"]]
-            if not all(type(self.metadata[key]) is kind for key, kind in (("shape", dict), ("tasks", list))):
-                raise ValueError("the shape or the tasks are malformed")
+            for key, most in _METADATA_WHOLE.items():
+                self._parse(key, lambda text: _whole(text, 0, most), f"a whole number from 0 to {most}")
+            if self.metadata["version"] != 1:
+                raise ValueError(f"version {metadata['version']}, this reader knows 1")
+            for key in ("method", "world"):
+                _expect(_is_name(metadata[key]), f"metadata '{key}'", metadata[key], _NAME[1])
+            for key, (holds, expected) in _METADATA_JSON.items():
+                self._parse(key, _parse_json, expected)
+                _expect(holds(self.metadata[key]), f"metadata '{key}'", self.metadata[key], expected)
         except KeyError as error:
             raise ValueError(f"{path}: no metadata {error}") from None
         except (ValueError, TypeError) as error:
             raise ValueError(f"{path}: {error}") from None
-        if self.metadata["version"] != 1:
-            raise ValueError(f"{path}: version {metadata['version']}, this reader knows 1")
-        self.tasks, self.shape, self.window = self.metadata["tasks"], self.metadata["shape"], self.metadata["window"]
+        self.method, self.world, self.window = metadata["method"], metadata["world"], self.metadata["window"]
+        self.envs = [env["name"] for env in self.metadata["envs"]]
+        self.tasks, self.shape = self.metadata["tasks"], self.metadata["shape"]
+        self.seen = [(env, task) for env, task in self.metadata["seen"]]
+
+    def _parse(self, key, parse, expected):
+        try:
+            self.metadata[key] = parse(self.metadata[key])
+        except ValueError as error:
+            raise ValueError(f"metadata '{key}': {error}, expected {expected}") from None
 
 
 def read_checkpoint(path):

@@ -33,6 +33,8 @@ python_test() {
 
 @test "synpo.py: files are read as they are, and what is broken is refused" { python_test Files; }
 
+@test "synpo.py: what the programs refuse is refused, and what they take is read" { python_test Readers; }
+
 @test "synpo.py: the worlds are those of the programs, from the same starts" { python_test Worlds; }
 
 @test "synpo.py: scores of a policy in torch are those of synpo-eval" { python_test Policies; }

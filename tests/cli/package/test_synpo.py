@@ -47,10 +47,12 @@ class Files(unittest.TestCase):
         self.assertEqual(rates[1, 1], matrix["successes"][1] / 2)
 
     def test_rows_of_a_pair_are_added_up(self):
-        path = written("two.tsv", "env\ttask\tepisodes\tsuccesses\treward\na\tR-B\t3\t1\t\na\tR-B\t1\t1\t2.5\n")
-        matrix = synpo.read_matrix(path)
+        head = "env\ttask\tfirst_episode\tepisodes\tsuccesses\treward\n"
+        matrix = synpo.read_matrix(written("two.tsv", head + "a\tR-B\t1\t1\t1\t2.5\na\tR-B\t2\t3\t1\t\n"))
         self.assertEqual(synpo.rates(matrix)[0].tolist(), [[0.5]])
-        self.assertTrue(np.isnan(matrix["reward"][0]) and matrix["reward"][1] == 2.5)
+        self.assertTrue(np.isnan(matrix["reward"][1]) and matrix["reward"][0] == 2.5)
+        matrix = synpo.read_matrix(written("two.tsv", head + "a\tR-B\t3\t1\t1\t\na\tR-B\t2\t3\t1\t\n"))
+        self.refused("episode 3 of the pair 'a', 'R-B' twice", synpo.rates, matrix)
 
     def test_a_log_is_read_with_NA_and_repeated_updates(self):
         log = synpo.read_log(here("run.log"))
@@ -60,8 +62,15 @@ class Files(unittest.TestCase):
         self.assertEqual({name: list(column) for name, column in synpo.read_log(twice).items()},
                          {"update": [1, 2], "loss": [4, 5]})
 
+    def test_of_a_log_that_was_resumed_with_another_report_the_later_rows_count(self):
+        rows = "".join(f"{update / 2}\t{update}\n" for update in (10, 20, 30, 15, 25))
+        log = synpo.read_log(written("resumed.log", "loss\tupdate\n" + rows))
+        self.assertEqual(log["update"].tolist(), [10, 15, 25])
+        self.assertEqual(log["loss"].tolist(), [5, 7.5, 12.5])
+        self.refused("no column 'update'", synpo.read_log, written("resumed.log", "step\tloss\n1\t2\n"))
+
     def test_trajectories_are_those_of_the_record(self):
-        with open(here("synpo.jsonl")) as file:
+        with open(here("synpo.jsonl"), encoding="utf-8") as file:
             lines = [json.loads(line) for line in file]
         episodes = list(synpo.read_trajectories(here("synpo.jsonl")))
         self.assertEqual(len(episodes), 4)
@@ -74,7 +83,7 @@ class Files(unittest.TestCase):
             np.testing.assert_allclose(episode["probabilities"], weights / weights.sum(1, keepdims=True), rtol=1e-12)
 
     def test_a_stream_that_says_its_end_has_all_or_is_refused(self):
-        with open(here("synpo.jsonl")) as file:
+        with open(here("synpo.jsonl"), encoding="utf-8") as file:
             lines = file.readlines()
         end = '{"format":"synpo-end","version":1,"trajectories":2}\n'
         self.assertEqual(len(list(synpo.read_trajectories(io.StringIO("".join(lines[:2]) + end)))), 2)
@@ -119,7 +128,7 @@ class Files(unittest.TestCase):
                             ('{"format":"synpo-trajectory","version":2}', "version 2"),
                             ('{"format":"synpo-trajectory","version":1}', "no field 'actions'"),
                             ('{"format":"synpo-trajectory","version":1,"actions":[1,2],"rewards":[1]}', "differ")):
-            with open(here("synpo.jsonl")) as file:
+            with open(here("synpo.jsonl"), encoding="utf-8") as file:
                 first = file.readline()
             self.refused(words, list, synpo.read_trajectories(io.StringIO(first + line + "\n")))
         with open(here("synpo.ckpt"), "rb") as file:
@@ -137,7 +146,7 @@ class Files(unittest.TestCase):
     def test_tables_are_read_no_more_freely_than_by_the_programs(self):
         head = "env\ttask\tseen\tepisodes\tsuccesses\treward\ttemperature\n"
         row = ["map1", "R-B", "1", "10", "5", "2.5", "0.5"]
-        with open(here("good.tsv"), "w") as file:
+        with open(here("good.tsv"), "w", encoding="utf-8") as file:
             file.write(head + "\t".join(row) + "\n")
         subprocess.check_output(["synpo-matrix", "merge", here("good.tsv")])
         synpo.read_matrix(here("good.tsv"))
@@ -159,7 +168,7 @@ class Files(unittest.TestCase):
                          written("bad.log", f"update\tloss\n1\t2\n2\t{field}\n"))
 
     def test_whatever_is_in_a_file_the_error_is_of_one_kind_and_names_it(self):
-        with open(here("synpo.jsonl")) as file:
+        with open(here("synpo.jsonl"), encoding="utf-8") as file:
             line = json.loads(file.readline())
         deep = "[" * 100000
         for change in ({"actions": [10**30] * len(line["actions"])}, {"actions": [1.5] * len(line["actions"])},
@@ -188,6 +197,201 @@ class Files(unittest.TestCase):
                            ("envs", deep), ("updates", "many"), ("options", "NaN")):
             text = json.dumps({"__metadata__": {**metadata, key: value}}).encode()
             self.refused("x: ", synpo.read_checkpoint, written("x", struct.pack("<Q", len(text)) + text))
+
+
+def taken_by_python(kind, path):
+    """Whether the reader of a kind of file takes this one; a refusal names the file."""
+    read = {"matrix": synpo.read_matrix, "log": synpo.read_log, "checkpoint": synpo.read_checkpoint,
+            "trajectories": lambda name: list(synpo.read_trajectories(name))}[kind]
+    try:
+        read(path)
+    except ValueError as error:
+        assert f"{path}: " in str(error), error
+        return False
+    return True
+
+
+def taken_by_programs(kind, path):
+    command = {"matrix": ["synpo-matrix", "merge"], "log": ["synpo-render", "curves", "--ansi", "-y", "loss"],
+               "checkpoint": ["synpo-eval", "--describe", "-c"],
+               "trajectories": ["synpo-gen-expert", "--relabel"]}[kind]
+    code = subprocess.run([*command, path], capture_output=True).returncode
+    assert code in (0, 65), (command, code)
+    return code == 0
+
+
+class Readers(unittest.TestCase):
+    """What the programs take, Python takes, and no more."""
+
+    def same(self, kind, taken, *texts):
+        for text in texts:
+            path = written("same", text)
+            self.assertEqual(taken_by_programs(kind, path), taken, text[:2000])
+            self.assertEqual(taken_by_python(kind, path), taken, text[:2000])
+
+    def differ(self, kind, by_python, *texts):
+        """Where the one and the other are right."""
+        for text in texts:
+            path = written("differ", text)
+            self.assertEqual((taken_by_python(kind, path), taken_by_programs(kind, path)), (by_python, not by_python),
+                             text[:2000])
+
+    def test_the_files_of_the_tree(self):
+        files = [os.path.join(folder, name) for top in ("data", "fuzz/cases")
+                 for folder, _, names in os.walk(os.path.join(os.path.dirname(__file__), "../../..", "tests", top))
+                 for name in names]
+        self.assertGreater(len(files), 10)
+        taken = []
+        for path in files:
+            for kind in ("matrix", "checkpoint", "trajectories"):  # there is no log
+                by_python = taken_by_python(kind, path)
+                self.assertEqual(by_python, taken_by_programs(kind, path), (kind, path))
+                taken += [kind] * by_python
+        self.assertEqual(set(taken), {"matrix", "checkpoint", "trajectories"})
+
+    def test_matrices(self):
+        good = {"run": "ab", "world": "gridworld", "window": 1, "method": "synpo", "seed": 1, "updates": 5,
+                "eval_seed": 7, "first_episode": 0, "env": "map1", "task": "R-B", "seen": 1, "episodes": 10,
+                "successes": 5, "wrong": 1, "timeouts": 4, "reward": 2.5, "length": 99, "part": "P",
+                "temperature": 0.5, "new": 0, "x": ""}
+
+        def table(*changes):
+            rows = [good.keys()] + [{**good, **change}.values() for change in changes]
+            return "".join("\t".join(map(str, row)) + "\n" for row in rows)
+
+        self.same("matrix", True, *(table({column: field}) for column, field in (
+            ("x", "\u200f"), ("part", ""), ("method", ""), ("reward", "-1e15"), ("reward", ".5"), ("reward", "5."),
+            ("temperature", "-0"), ("env", "e" * 255), ("episodes", 10**12), ("seed", 2**63 - 1),
+            ("length", "010"))))
+        self.same("matrix", False, table(), *(table({column: field}) for column, field in (
+            ("new", 1), ("part", "X"), ("env", "e" * 256), ("task", "\u00e9" * 128), ("method", "m" * 256),
+            ("episodes", 10**12 + 1), ("window", 10**12 + 1), ("seed", 2**63), ("eval_seed", 2**64 - 1),
+            ("updates", 2**63), ("reward", 1.1e15), ("wrong", 2), ("x", "\x01"), ("x", "\x7f"), ("x", "\x85"),
+            ("run", "\x1b[0m"), ("x", "a\rb"))))
+        self.same("matrix", True, table({}, {"temperature": 1}), table({}, {"first_episode": 10}),
+                  table({"run": ""}, {"run": "", "seed": 2}))
+        self.same("matrix", False, table({}, {}), table({}, {"successes": 4}), table({}, {"temperature": "0.50"}),
+                  table({"temperature": 0}, {"temperature": "-0"}), table({"run": ""}, {"run": ""}),
+                  table({"temperature": ""}, {"temperature": ""}))
+        for columns, taken in ((999, True), (1001, False)):
+            wide = {**good, **{f"x{i}": "" for i in range(columns - len(good))}}
+            self.same("matrix", taken, "\t".join(wide) + "\n" + "\t".join(map(str, wide.values())) + "\n")
+        # Reading takes it, adding up does not: rates(). And what is too small for a number is 0.
+        self.differ("matrix", True, table({}, {"first_episode": 9}), table({"reward": "1e-400"}))
+
+    def test_logs(self):
+        head = "update\tloss\n"
+        self.same("log", True, head + "10\t1\n20\tNA\n15\t3\n", "loss\tupdate\n5\t1\n5\t2\n")
+        self.same("log", False, "step\tloss\n1\t2\n", head + "1\t2\x01\n",
+                  *(f"{head}{update}\t2\n" for update in ("1.0", "-1", "NA", 2**63)))
+        # A log that is read may still grow. A curve needs a row.
+        self.differ("log", True, (head + "1\t2\n2\t").encode() + b"\xc3", head)
+        # Every column is read, not only the one that is drawn.
+        self.differ("log", False, *(f"update\tloss\t{column}\n1\t2\t{field}\n" for column, field in (
+            ("unseen_success", "1.5"), ("right_move", "-1"), ("wrong", "2"), ("env", "x"))))
+
+    def test_trajectories(self):
+        with open(os.path.join(os.path.dirname(__file__), "../../data/cli/expert.jsonl"), encoding="utf-8") as file:
+            text = file.readline().rstrip("\n")
+        line = json.loads(text)
+        n, rewards, start = len(line["actions"]), line["rewards"], line["start"]
+
+        def changed(**changes):
+            return text + "\n" + json.dumps({**line, **changes}) + "\n"
+
+        def more(members):
+            return text + "\n" + text[:-1] + f",{members}}}\n"
+
+        self.same("trajectories", True, changed(), changed(seed=2**64 - 1), changed(window=1000),
+                  changed(rewards=[rewards[0] + 5e-6] + rewards[1:]), changed(x="\U0001f600"),
+                  changed(x=json.loads("[" * 7 + "1" + "]" * 7)), text + "\r\n", text,
+                  text[:-1] + " " * (2**24 - len(text)) + "}\n")
+        wrong = {"format": [None, "x"], "version": [True, 1.0, "1", 2, 0], "world": ["", 7, None, []],
+                 "rules": [1.0, -1, True, 2**31], "env": ["", "e" * 256, "a\x85", "\ud800", 7], "task": [None, "\t"],
+                 "env_hash": ["", 7, line["env_hash"][1:], "G" * 16], "window": [-1, 1001, 1.5, True],
+                 "seed": [-1, 1.0, True, "1", 2**64], "episode": [-1, 2**63, None],
+                 "start": [7, [], None, {**start, "agent": [1]}, {**start, "agent": [1, 1.0]},
+                           {**start, "agent": [1, 2**21]}, {str(i): [1, 1] for i in range(65)}],
+                 "actions": [[], [-7] * n, [256] * n, [True] * n, "0" * n, None],
+                 "labels": [[300] * n, [-1] * n, [], [0], None],
+                 "rewards": [[None] * n, list(map(str, rewards)), [True] * n, [0.015] * n, [10000.0] * n,
+                             [10**400] * n, rewards[1:], {}],
+                 "success": [3, 1, None, "true"], "terminated": [1], "truncated": [0]}
+        self.same("trajectories", False, *(changed(**{field: value}) for field in wrong for value in wrong[field]),
+                  changed(actions=[], rewards=[]), changed(actions=[0] * 301, rewards=[-0.01] * 301),
+                  more('"seed":1'), text.replace('"start":{', '"start":{"agent":[1,1],'), more('"x":1e999'),
+                  more('"x":[{"y":-1e999}]'), more('"\\ud800":1'), more('"x":' + "[" * 8 + "1" + "]" * 8), "\n",
+                  text[:-1] + " " * (2**24 + 1 - len(text)) + "}\n")
+        for end, taken in (({"trajectories": 1}, True), ({"trajectories": 2}, False), ({"trajectories": "1"}, False),
+                           ({"trajectories": True}, False), ({"trajectories": 1.0}, False), ({}, False),
+                           ({"trajectories": 1, "version": True}, False), ({"trajectories": 2**63}, False)):
+            self.same("trajectories", taken, text + "\n" + json.dumps({"format": "synpo-end", "version": 1, **end}))
+        # The episode is no episode of the world, which Python does not play; a number of no account is not looked at.
+        self.differ("trajectories", True, *(changed(**change) for change in (
+            {"world": "x"}, {"env": "x"}, {"task": "x"}, {"rules": 2}, {"start": {}}, {"truncated": True},
+            {"labels": [255] * n}, {"rewards": [0.5] * n})), more('"x":1' + "0" * 400))
+        # The programs' parser takes NUL for the end of a line, and a mark for its beginning.
+        self.differ("trajectories", False, text + "\0x\n", "\ufeff" + text + "\n")
+
+    def test_checkpoints(self):
+        with open(os.path.join(os.path.dirname(__file__), "../../data/v1/checkpoint.safetensors"), "rb") as file:
+            size, = struct.unpack("<Q", file.read(8))
+            header, data = json.loads(file.read(size)), file.read()
+        metadata = header["__metadata__"]
+        name = min(header.keys() - {"__metadata__"}, key=lambda key: header[key]["data_offsets"])
+        entry, end = header[name], len(data)
+
+        def made(header, data=data):
+            text = (header if isinstance(header, str) else json.dumps(header)).encode()
+            return struct.pack("<Q", len(text)) + text + data
+
+        def tensor(**changes):
+            return made({**header, name: {**entry, **changes}})
+
+        def empty(shape, begin=end):
+            return made({**header, "empty": {"dtype": "F32", "shape": shape, "data_offsets": [begin, begin]}})
+
+        def said(key, value):
+            return made({**header, "__metadata__": {**metadata, key: value}})
+
+        def twice(key, value):
+            return made(json.dumps(header)[:-1] + f", {json.dumps(key)}: {json.dumps(value)}}}")
+
+        dims, offsets = entry["shape"], entry["data_offsets"]
+        self.same("checkpoint", True, made(header), made(json.dumps(header) + "  "), empty([0, 3]), empty([0, 3], 0),
+                  tensor(extra=[[1]]), tensor(shape=[1] * (8 - len(dims)) + dims))
+        self.same("checkpoint", False, twice(name, entry), twice("__metadata__", metadata),
+                  made(json.dumps(header).replace('"dtype":', '"dtype": "I64", "dtype":', 1)),
+                  *(tensor(data_offsets=wrong) for wrong in ([*offsets, 5], [0], [], "ab", [False, offsets[1]],
+                                                             [0.0, offsets[1]], None)),
+                  *(tensor(shape=wrong) for wrong in ([1] * (9 - len(dims)) + dims, [1] * 70, "3", None,
+                                                      list(map(float, dims)))),
+                  *(tensor(dtype=wrong) for wrong in ([], None, "f32", "F8")),
+                  tensor(extra=[[[1]]]), empty([2**34, 2**34, 0]), made({**header, "zz": 1}), made([1]),
+                  made({**header, "__metadata__": []}), made(header, data + b"x"), made(header, data[:-1]),
+                  struct.pack("<Q", 50) + b"{} ")
+        for key in ("version", "rules", "window", "updates", "states", "seed"):
+            self.same("checkpoint", False, *(said(key, text) for text in (
+                "", "-1", "+1", " 1", "1_0", "1.0", "\u0661", str(2**63))))
+        self.same("checkpoint", False, *(said(key, str(2**53 + 1)) for key in ("updates", "states")),
+                  *(said(key, text) for key in ("method", "world") for text in ("", "e" * 256, "\x85", "\t")))
+        env = {"name": "a", "hash": "0123456789abcdef", "content": "x"}
+        values = {"tasks": [[], ["a"]], "seen": [[], [["a", "b"]]], "shape": [{}, {"a": -1}],
+                  "options": [{}, {"a": "x"}], "envs": [[], [env], [{**env, "more": "y"}]]}
+        self.same("checkpoint", True, *(said(key, json.dumps(value)) for key in values for value in values[key]))
+        wrong = {"tasks": ["R-B", {}, [1], [""], ["\x01"], ["e" * 256], None],
+                 "seen": [{}, 5, [["a"]], [["a", 1]], ["ab"], [["a", ""]], None],
+                 "shape": [[], {"a": 1.0}, {"a": True}, {"a": "1"}, {"a": 2**64}, None],
+                 "options": [[], {"a": 1}, {"a": None}, None],
+                 "envs": [{}, [{}], [1], [{**env, "hash": "0123456789ABCDEF"}], [{**env, "content": 1}],
+                          [{**env, "name": ""}], [{**env, "more": 1}], None]}
+        self.same("checkpoint", False, *(said(key, json.dumps(value)) for key in wrong for value in wrong[key]),
+                  said("shape", '{"a":1,"a":1}'), said("options", '{"a":"x","a":"x"}'),
+                  *(made({**header, "__metadata__": {other: metadata[other] for other in metadata if other != key}})
+                    for key in metadata if key not in ("written_by", "extractor")))
+        # No array of numpy; a third name, which the programs' parser leaves out; NUL and mark as above.
+        self.differ("checkpoint", False, empty([0, 2**34, 2**34]), said("seen", '[["a","b","c"]]'),
+                    made(json.dumps(header) + "\0"), made("\ufeff" + json.dumps(header)))
 
 
 class Worlds(unittest.TestCase):
@@ -220,7 +424,8 @@ class Worlds(unittest.TestCase):
         self.assertEqual([info["episode"] for _, info in first], list(range(10)))
         self.assertGreater(len({(info["env"], info["task"]) for _, info in first}), 1)
         self.assertNotEqual(first[0][1], env.reset(seed=8)[1])
-        seen = {tuple(line.split("\t")[:2]) for line in open(here("pairs.tsv")) if line.endswith("\t1\n")}
+        with open(here("pairs.tsv"), encoding="utf-8") as file:
+            seen = {tuple(line.split("\t")[:2]) for line in file if line.endswith("\t1\n")}
         self.assertLessEqual({(info["env"], info["task"]) for _, info in first}, seen)
 
     def test_observations_are_colours(self):
