@@ -20,6 +20,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 constexpr char kFormat[] = "synpo-checkpoint";
 constexpr char kTrainPrefix[] = "train/";
+constexpr char kPairsOfNames[] = "an array of pairs of names";
 constexpr int64_t kMostCount = int64_t(1) << 53;  // so that no run comes to the end of the type
 
 int64_t whole(const SafeTensors& file, const std::string& key) {
@@ -145,7 +146,10 @@ Checkpoint read_checkpoint(Input& input) {
       fail(Exit::kData, "metadata 'updates', 'states': expected at most 2^53");
     c.seed = uint64_t(whole(file, "seed"));
     c.tasks = structure<std::vector<std::string>>(file, "tasks", "an array of names");
-    c.seen = structure<std::vector<std::pair<std::string, std::string>>>(file, "seen", "an array of pairs of names");
+    for (const auto& pair : structure<std::vector<std::vector<std::string>>>(file, "seen", kPairsOfNames)) {
+      if (pair.size() != 2) fail(Exit::kData, "metadata 'seen': expected ", kPairsOfNames);
+      c.seen.emplace_back(pair[0], pair[1]);
+    }
     for (const std::string& task : c.tasks) checked_name("tasks", task);
     for (const auto& [env, task] : c.seen)
       for (const std::string& name : {env, task}) checked_name("seen", name);

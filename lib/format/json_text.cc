@@ -77,6 +77,9 @@ class Inspector : public nlohmann::json_sax<Json> {
 }  // namespace
 
 Json parse_json(std::string_view text, const JsonLimits& limits) {
+  // The parser takes it for the end.
+  if (const size_t at = text.find('\0'); at != std::string_view::npos)
+    fail(Exit::kData, "no JSON (byte ", at + 1, ": a NUL byte)");
   Inspector inspector(limits);
   Json::sax_parse(text, &inspector);
   try {

@@ -124,6 +124,7 @@ TEST(Trajectory, RefusesWhatIsNoObject) {
   EXPECT_EQ(refused("{} {}"), no_json("byte 4: while parsing value - unexpected '{'; expected end of input"));
   EXPECT_EQ(refused("{\"a\":\"\xff\"}"),
             no_json("byte 7: while parsing value - invalid string: ill-formed UTF-8 byte; last read: '\"\\xff'"));
+  EXPECT_EQ(refused(std::string("{}\0x", 4)), no_json("byte 3: a NUL byte"));
   EXPECT_EQ(refused("{\"a\":1e999}"), no_json("byte 6: number overflow parsing '1e999'"));
   EXPECT_EQ(refused("{\"a\":1,\"b\":{\"a\":1},\"a\":2}"),
             "65 found the name 'a' twice in one object, expected a JSON object");
