@@ -236,13 +236,13 @@ check-torch: torch $(B)/engine-tests
 	$(Q)! grep -q amx_tile /proc/cpuinfo || export SYNPO_KERNELS=avx512; SYNPO_TORCH= $(B)/engine-tests --gtest_brief=1
 
 bench: all $(B)/synpo-bench | $(filter torch,$(MAKECMDGOALS))
-	@scripts/bench
+	@scripts/bench $(B)
 
 gallery: all
-	scripts/gallery $(CHECKPOINT)
+	scripts/gallery $(B) $(if $(CHECKPOINT),'$(CHECKPOINT)')
 
 demo: all
-	@scripts/demo
+	@scripts/demo $(B)
 
 deps:
 	@scripts/deps $(PACKAGES)

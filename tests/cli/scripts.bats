@@ -217,3 +217,113 @@ exit 3" '# no test'
     check "$(gtest COMPLETED)" 'TEST "a" { true; }'
     [ "$status $last" = "1 3 passed, 1 failed" ] || complain "$(cat out)"
 }
+
+# standing_in FOLDER NAME...: programs of these names there that do what stdin says.
+standing_in() {
+    local name script
+    script=$(cat)
+    mkdir -p "$1"
+    for name in "${@:2}"; do
+        printf '#!/bin/sh\n%s\n' "$script" >"$1/$name"
+        chmod +x "$1/$name"
+    done
+}
+
+@test "completions: a program that does not run gives none" {
+    standing_in bin synpo-train <<<'exit 3'
+    run -3 "$ROOT/scripts/completions" bash bin/synpo-train
+    [ -z "$output" ] || complain "found '$output'"
+    # Nor does one whose command does not.
+    standing_in bin synpo-train <<<'[ "$1" = --list-options ] || exit 3; printf "command\tsplit\tsplits\n"'
+    run -3 "$ROOT/scripts/completions" bash bin/synpo-train
+}
+
+@test "gpu-kit: the folder is the caller's, and is replaced only where it is a kit" {
+    cp -r "$ROOT/scripts" .
+    mkdir -p mine/kit empty
+    echo mine >mine/kit/notes
+    cd mine
+    run -73 ../scripts/gpu-kit kit
+    [ "$output" = "gpu-kit: $PWD/kit is no kit, and not empty" ]
+    [ "$(cat kit/notes)" = mine ]
+    for folder in ../empty ../empty new; do
+        ../scripts/gpu-kit "$folder"
+        [ -d "$folder/gtest/src" ]
+    done
+    ../scripts/gpu-kit
+    [ -d ../build-kit/eigen3/Eigen ]
+}
+
+@test "deb: the time is that of this tree, not that of a repository which it lies in" {
+    command -v git >/dev/null || skip "no git here"
+    export HOME=$PWD GIT_CONFIG_NOSYSTEM=1
+    git init -q .
+    git -c user.name=x -c user.email=x@y.z commit -q --allow-empty -m one
+    mkdir -p tree/build
+    for name in CHANGELOG.md GUIDE.md LICENSE Makefile README.md RESULTS.md examples lib man python scripts tests tools \
+        packaging; do mkdir "tree/$name"; done
+    cp -r "$ROOT/scripts" "$ROOT/packaging" tree/
+    touch -d @1234567890 tree/Makefile
+    standing_in bin dh </dev/null
+    standing_in bin dpkg-buildpackage <<<'echo "$SOURCE_DATE_EPOCH" >../x.deb'
+    PATH=$PWD/bin:$PATH tree/scripts/deb "$PWD/tree/build" 1.2.3
+    [ "$(cat tree/build/deb/x.deb)" = 1234567890 ] || complain "found the time $(cat tree/build/deb/x.deb)"
+}
+
+@test "check-deb: runs what the packages installed, not what comes first in PATH" {
+    [ ! -e /usr/bin/synpo-matrix ] || skip "the packages are installed here"
+    for package in synpo synpo-render libsynpo-dev python3-synpo; do
+        mkdir -p build/deb
+        : >"build/deb/${package}_1_all.deb"
+    done
+    standing_in bin dpkg-query <<<'exit 1'
+    standing_in bin id <<<'echo 0'
+    standing_in bin lintian apt-get dpkg </dev/null
+    standing_in bin synpo-matrix <<<'touch wrong; exit 1'
+    sed -i "s|touch wrong|touch $PWD/wrong|" bin/synpo-matrix
+    PATH=$PWD/bin:$PATH run -127 "$ROOT/scripts/check-deb" "$PWD/build"
+    [ ! -e wrong ]
+}
+
+@test "check-gpu: what fails is a failure, whatever an earlier run has left" {
+    cp -r "$ROOT/scripts" .
+    standing_in bin make nvidia-smi python3 </dev/null
+    standing_in build-gpu synpo-matrix synpo-gen-expert </dev/null
+    standing_in build-gpu engine-tests <<<'echo "x loss 1e-7 logits 1e-6 worst gradient 1e-5"'
+    # One that writes every checkpoint that it is told to.
+    standing_in build-gpu synpo-train <<<'for a; do case $a in *.ckpt) echo 1 >"$a" ;; esac; done'
+    check_gpu() { PATH=$PWD/bin:$PATH TORCH=x OUTPUT=out scripts/check-gpu parity >table; }
+    check_gpu
+    [ "$(grep -c '^bits .* the same$' table)" -eq 2 ]
+    standing_in build-gpu synpo-train <<<'exit 1'
+    run -1 check_gpu
+    run ! grep '^bits' table
+    standing_in build-gpu synpo-train <<<'for a; do case $a in *.ckpt) echo 1 >"$a" ;; esac; done'
+    check_gpu
+    # Tests that are all skipped.
+    standing_in build-gpu engine-tests <<<'echo "[  PASSED  ] 0 tests."'
+    run -1 check_gpu
+}
+
+@test "demo: its mazes are there where the build folder is a link to another disk" {
+    cp -r "$ROOT/scripts" .
+    mkdir -p far/away/disk
+    ln -s far/away/disk build
+    standing_in build $TOOLS <<<'echo x'
+    scripts/demo >out
+    [ -s far/away/disk/demo/mazes/map1.txt ]
+    standing_in other $TOOLS <<<'echo x'
+    rm -r far/away/disk/demo
+    scripts/demo other >out
+    [ -e other/demo/pairs.tsv ] && [ ! -e build/demo ]
+    run -64 scripts/demo 30s
+}
+
+@test "the first step of CI stays in its tree, whatever CDPATH says" {
+    mkdir -p tree elsewhere/.ci
+    cp -r "$ROOT/.ci" tree/
+    standing_in bin make <<<'pwd; exit 3'
+    cd tree
+    CDPATH=$OLDPWD/elsewhere PATH=$OLDPWD/bin:$PATH run -3 .ci/run
+    [ "$output" = "$PWD" ] || complain "found '$output'"
+}
