@@ -5,6 +5,26 @@ CXX      ?= g++
 PREFIX   ?= /usr/local
 B        := build
 
+# What installs and compilers say goes to stderr where something else is asked for.
+ASIDE := $(if $(filter bench deps deps-torch,$(MAKECMDGOALS)),>&2)
+
+# Builds on all processors. A make that another one starts has what that one has.
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(shell nproc)
+endif
+
+# Goals that do more than build come one after the other, each with a make of its own: first the packages, then what
+# needs them; first clean, then all.
+ifneq ($(and $(word 2,$(MAKECMDGOALS)),$(filter-out all lib torch completions $(B)/%,$(MAKECMDGOALS))),)
+.NOTPARALLEL:
+$(MAKECMDGOALS): FORCE
+	@$(MAKE) --no-print-directory ASIDE='$(ASIDE)' $@
+FORCE:
+else
+
+# What fails leaves no file that looks as if it were made.
+.DELETE_ON_ERROR:
+
 # Programs, tables, pictures and tests take longer to compile than to run. CXXFLAGS of the caller come last and win.
 QUICK    := tools lib/draw lib/stats/matrix lib/stats/report tests/unit
 OPTIMISE  = $(if $(filter $(QUICK:%=$(B)/%/%),$@),-O1,-O3)
@@ -23,22 +43,26 @@ ALL_DRAW_LIBS := -lopencv_dnn -lopencv_videoio -lopencv_imgcodecs -lopencv_imgpr
 TOOLS    := synpo-gen-expert synpo-train synpo-finetune synpo-eval synpo-matrix synpo-render
 # DRAW=no leaves out pictures, and with them OpenCV, cairo and giflib; synpo-render
 # then says that they are missing.
-LIB_SRC  := $(shell find lib -name '*.cc' -not -path 'lib/torch/*' \
-            $(if $(filter no,$(DRAW)),-not '(' -path 'lib/draw/*/*' -not -path 'lib/draw/terminal/*' ')'))
+LIB_SRC  := $(sort $(shell find lib -name '*.cc' -not -path 'lib/torch/*' \
+            $(if $(filter no,$(DRAW)),-not '(' -path 'lib/draw/*/*' -not -path 'lib/draw/terminal/*' ')')))
 # The kernels are compiled once for each kind of processor; the program picks when it starts (lib/kernel).
-# The machine that the compiler is for; this one while no compiler is installed (make deps all).
+# The machine that the compiler is for; this one while no compiler is installed.
 MACHINE  := $(firstword $(subst -, ,$(shell $(CXX) -dumpmachine 2>/dev/null || uname -m)))
 TARGETS  := plain $(if $(filter x86_64,$(MACHINE)),avx2 avx512 bf16 amx)
 TARGET_avx2   := -mavx2 -mfma
 TARGET_avx512 := $(TARGET_avx2) -mavx512f -mavx512bw -mavx512dq -mavx512vl
 TARGET_bf16   := $(TARGET_avx512) -mavx512bf16
 TARGET_amx    := $(TARGET_avx512) -mamx-tile -mamx-bf16 -Wno-uninitialized  # GCC 12 warns of its own header
+# Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same
+# level, and no tuning that leaves some sums of up to so many bits unfused, as GCC 14 has.
+FUSED_ALL := --param=avoid-fma-max-bits=0
+KERNEL_FLAGS = -O3 -Wno-psabi $(if $(findstring clang,$(CXX)),,$(FUSED_ALL)) $(TARGET_$*)
 KERNEL_OBJ := $(TARGETS:%=$(B)/lib/kernel/target_%.o)
 LIB_OBJ  := $(filter-out %/target.o,$(LIB_SRC:%.cc=$(B)/%.o)) $(KERNEL_OBJ) $(B)/builtin_maps.o $(B)/version.o
-TOOL_SRC := $(shell find tools -name '*.cc')
-TEST_SRC := $(shell find tests/unit -name '*.cc' $(if $(filter no,$(DRAW)),-not -path 'tests/unit/draw/*'))
+TOOL_SRC := $(sort $(shell find tools -name '*.cc'))
+TEST_SRC := $(sort $(shell find tests/unit -name '*.cc' $(if $(filter no,$(DRAW)),-not -path 'tests/unit/draw/*')))
 TEST_OBJ := $(TEST_SRC:%.cc=$(B)/%.o)
-MAPS     := $(wildcard lib/world/grid/maps/map*.txt)
+MAPS     := $(sort $(wildcard lib/world/grid/maps/map*.txt))
 
 PACKAGES := g++ make libeigen3-dev libopencv-dev libcairo2-dev libharfbuzz-dev libgif-dev nlohmann-json3-dev \
             fonts-dejavu-core libgtest-dev bats jq man-db python3-numpy poppler-utils
@@ -49,7 +73,7 @@ DEB_PACKAGES := debhelper lintian dpkg-dev fakeroot pkg-config
 # built.
 LIBDIR    ?= lib
 PYTHONDIR ?= share/synpo/python
-HEADERS   := $(shell find lib -name '*.h' -not -path 'lib/torch/*')
+HEADERS   := $(sort $(shell find lib -name '*.h' -not -path 'lib/torch/*'))
 # Debian's zsh looks for its own packages' completions elsewhere than for others.
 ZSH_DIR    = share/zsh/$(if $(filter /usr,$(PREFIX)),vendor-completions,site-functions)
 COMPLETIONS := $(TOOLS:%=$(B)/completions/bash/%) $(TOOLS:%=$(B)/completions/zsh/_%) \
@@ -75,7 +99,7 @@ TORCH_LIB   := $(or $(TORCH:%=%/lib),/usr/lib/$(shell $(CXX) -dumpmachine 2>/dev
 TORCH_CUDA  := $(wildcard $(TORCH_LIB)/libtorch_cuda.so)
 CUDA_HOME   ?= /usr/local/cuda
 TORCH_STD   ?= c++17
-TORCH_SRC   := $(wildcard lib/torch/*.cc)
+TORCH_SRC   := $(sort $(wildcard lib/torch/*.cc))
 TORCH_OBJ   := $(TORCH_SRC:%.cc=$(B)/%.o)
 TORCH_CFLAGS = -std=$(TORCH_STD) -Wall -Wextra -O1 -fPIC -fvisibility=hidden -MMD -MP -Ilib \
                $(if $(TORCH),-isystem $(TORCH)/include) -isystem $(TORCH_DIR)/include/torch/csrc/api/include \
@@ -98,18 +122,6 @@ else
 Q   := @
 say = @printf '%-4s %s\n' '$(1)' '$(2)' $(ASIDE)
 endif
-# What installs and compilers say goes to stderr where something else is asked for.
-ASIDE := $(if $(filter bench deps deps-torch,$(MAKECMDGOALS)),>&2)
-
-# Builds on all processors. Goals of one command still come one after the other: first the packages, then what needs
-# them.
-MAKEFLAGS += -j$(shell nproc)
-ifneq ($(filter deps,$(MAKECMDGOALS)),)
-$(LIB_OBJ) $(TOOL_SRC:%.cc=$(B)/%.o) $(TEST_OBJ) $(B)/tests/bench/synpo-bench.o $(STD): | deps
-endif
-ifneq ($(filter deps-torch,$(MAKECMDGOALS)),)
-$(TORCH_OBJ): | deps-torch
-endif
 
 .PHONY: all completions lib torch check test lint bench demo gallery deps deps-torch deps-deb deb install uninstall \
     clean check-torch gpu-kit dist help
@@ -122,24 +134,48 @@ lib: $(B)/libsynpo.a
 torch: $(B)/libsynpo_torch.so
 	@echo "The plug-in of LibTorch is $<: --device torch-cpu$(if $(TORCH_CUDA), or cuda) uses it" $(ASIDE)
 
-$(B)/libsynpo.a: $(LIB_OBJ)
+# Written anew, and with them whatever depends on them, where the flags are other ones than those of the last build, or
+# what is put together. The flags unexpanded: some depend on what is compiled.
+FLAGS := $(foreach name,CXX CXXFLAGS KIT ALL_CXXFLAGS OF_CLANG QUICK OPTIMISE OPENCV_CFLAGS CAIRO_CFLAGS KERNEL_FLAGS \
+           FUSED_ALL $(TARGETS:%=TARGET_%),$(value $(name)))
+PARTS := $(LIB_OBJ) $(DRAW_LIBS) $(GTEST) $(LDFLAGS)
+ifneq ($(FLAGS),$(file <$(B)/flags))
+$(B)/flags: FORCE
+endif
+ifneq ($(PARTS),$(file <$(B)/parts))
+$(B)/parts: FORCE
+endif
+$(B)/flags: export TEXT := $(FLAGS)
+$(B)/parts: export TEXT := $(PARTS)
+$(B)/flags $(B)/parts:
+	@mkdir -p $(@D)
+	@printf '%s\n' "$$TEXT" > $@
+
+$(B)/libsynpo.a: $(LIB_OBJ) $(B)/parts
 	$(call say,AR,$@)
-	$(Q)rm -f $@ && ar rcs $@ $^
+	$(Q)rm -f $@ && ar rcs $@ $(LIB_OBJ)
+
+# What is linked, of what a program depends on.
+OBJECTS = $(filter %.o %.a,$^)
 
 # Every tool is one file of its name; those of several commands have a folder of them.
 define TOOL_RULE
 $(B)/$(1): $(patsubst %.cc,$(B)/%.o,$(if $(filter synpo-render-no,$(1)-$(DRAW)),tools/without_drawing/$(1).cc, \
-           tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc))) $(B)/libsynpo.a
+           tools/$(1).cc $(wildcard tools/$(1:synpo-%=%)/*.cc))) $(B)/libsynpo.a $(B)/parts
 	$$(call say,LINK,$$@)
 	$$(Q)$$(CXX) $$(ALL_CXXFLAGS) -o $$@ $$(filter %.o,$$^) $(B)/libsynpo.a $$(LDFLAGS) \
 	    $(if $(filter synpo-render,$(1)),$$(DRAW_LIBS))
 endef
 $(foreach tool,$(TOOLS),$(eval $(call TOOL_RULE,$(tool))))
 
-# The folder that the plug-in was built against counts as one of its sources.
+# A file that is made every time and stays what it was where nothing has changed.
+if_other = if cmp -s $@.part $@; then rm $@.part; else mv $@.part $@; fi
+
+# What the plug-in was built against, and how, counts as one of its sources.
 $(B)/lib/torch/from: FORCE
 	@mkdir -p $(@D)
-	@echo '$(TORCH_LIB)' | cmp -s - $@ || echo '$(TORCH_LIB)' > $@
+	@echo '$(CXX) $(TORCH_CFLAGS) $(TORCH_LIBS)' > $@.part
+	@$(if_other)
 .PHONY: FORCE
 $(TORCH_OBJ): $(B)/%.o: %.cc $(B)/lib/torch/from
 	@mkdir -p $(@D)
@@ -149,22 +185,22 @@ $(B)/libsynpo_torch.so: $(TORCH_OBJ)
 	$(call say,LINK,$@)
 	$(Q)$(CXX) -shared -o $@ $^ $(TORCH_LIBS)
 
-$(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a
+$(B)/synpo-bench: $(B)/tests/bench/synpo-bench.o $(B)/libsynpo.a $(B)/parts
 	$(call say,LINK,$@)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $(OBJECTS) $(LDFLAGS)
 
 # The engines' tests alone, with GoogleTest's sources where it is not installed.
-$(B)/engine-tests: $(filter $(B)/tests/unit/engine/%,$(TEST_OBJ)) $(if $(KIT),$(B)/gtest.o) $(B)/libsynpo.a
+$(B)/engine-tests: $(filter $(B)/tests/unit/engine/%,$(TEST_OBJ)) $(if $(KIT),$(B)/gtest.o) $(B)/libsynpo.a $(B)/parts
 	$(call say,LINK,$@)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) $(if $(KIT),,-lgtest -lgtest_main)
-$(B)/gtest.o:
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $(OBJECTS) $(LDFLAGS) $(if $(KIT),,-lgtest -lgtest_main)
+$(B)/gtest.o: $(B)/flags
 	$(call say,CXX,$(KIT)/gtest)
 	$(Q)cat $(KIT)/gtest/src/gtest-all.cc $(KIT)/gtest/src/gtest_main.cc | \
 	    $(CXX) -std=c++17 -O1 -I$(KIT) -I$(KIT)/gtest -x c++ -c -o $@ -
 
-$(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a
+$(B)/unit-tests: $(TEST_OBJ) $(B)/libsynpo.a $(B)/parts
 	$(call say,LINK,$@)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $^ $(LDFLAGS) $(or $(GTEST),-lgtest -lgtest_main) $(DRAW_LIBS)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -o $@ $(OBJECTS) $(LDFLAGS) $(or $(GTEST),-lgtest -lgtest_main) $(DRAW_LIBS)
 
 $(TEST_OBJ): INCLUDES += -Itests/unit
 
@@ -175,16 +211,12 @@ $(B)/tests/bench/synpo-bench.o: OPTIMISE = -O3 -march=native
 $(B)/lib/draw/canvas/%.o $(B)/tests/unit/draw/%.o: INCLUDES += $(CAIRO_CFLAGS)
 $(B)/lib/draw/video/%.o $(B)/lib/draw/vision/%.o: INCLUDES += $(OPENCV_CFLAGS)
 
-# Which products and sums become one instruction, and with it the last bit, depends on the optimiser: always the same
-# level, and no tuning that leaves some sums of up to so many bits unfused, as GCC 14 has.
-FUSED_ALL := --param=avoid-fma-max-bits=0
-$(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc
+$(KERNEL_OBJ): $(B)/lib/kernel/target_%.o: lib/kernel/target.cc $(B)/flags
 	@mkdir -p $(@D)
 	$(call say,CXX,$< for $*)
-	$(Q)$(CXX) $(ALL_CXXFLAGS) -O3 -Wno-psabi $(if $(findstring clang,$(CXX)),,$(FUSED_ALL)) $(TARGET_$*) \
-	    -DSYNPO_TARGET=$* -c -o $@ $<
+	$(Q)$(CXX) $(ALL_CXXFLAGS) $(KERNEL_FLAGS) -DSYNPO_TARGET=$* -c -o $@ $<
 
-$(B)/%.o: %.cc | $(STD)
+$(B)/%.o: %.cc $(B)/flags | $(STD)
 	@mkdir -p $(@D)
 	$(call say,CXX,$<)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) $(USE_STD) -c -o $@ $<
@@ -194,7 +226,7 @@ $(B)/std.h:
 	@mkdir -p $(@D)
 	@printf '#include <%s>\n' algorithm array cmath cstdint cstring functional map memory optional set sstream string \
 	    unordered_map unordered_set vector > $@
-$(STD): $(B)/std.h.gch/%.gch: $(B)/std.h
+$(STD): $(B)/std.h.gch/%.gch: $(B)/std.h $(B)/flags
 	@mkdir -p $(@D)
 	$(call say,CXX,$< -$*)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -x c++-header -o $@ $<
@@ -202,7 +234,7 @@ $(B)/std.h.gch/O1.gch: OPTIMISE = -O1
 
 $(B)/builtin_maps.cc: $(MAPS) Makefile
 	@mkdir -p $(@D)
-	@{ echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; \
+	@set -e; { echo '#include "world/grid/builtin_maps.h"'; echo 'namespace synpo {'; \
 	   echo 'const std::vector<BuiltinMap> kBuiltinMaps = {'; \
 	   for map in $(MAPS); do printf '{"%s", R"(' "$$(basename $$map .txt)"; cat $$map; echo ')"},'; done; \
 	   echo '};'; echo '}'; } > $@
@@ -218,7 +250,7 @@ endif
 $(B)/version.cc: Makefile
 	@mkdir -p $(@D)
 	@printf '%s\n' '#include "base/cli/version.h"' 'namespace synpo {' '$(NAMES)' '}' > $@
-$(B)/builtin_maps.o $(B)/version.o: %.o: %.cc
+$(B)/builtin_maps.o $(B)/version.o: %.o: %.cc $(B)/flags
 	$(call say,CXX,$<)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -c -o $@ $<
 
@@ -235,7 +267,7 @@ lint:
 check-torch: torch $(B)/engine-tests
 	$(Q)! grep -q amx_tile /proc/cpuinfo || export SYNPO_KERNELS=avx512; SYNPO_TORCH= $(B)/engine-tests --gtest_brief=1
 
-bench: all $(B)/synpo-bench | $(filter torch,$(MAKECMDGOALS))
+bench: all $(B)/synpo-bench
 	@scripts/bench $(B)
 
 gallery: all
@@ -269,9 +301,10 @@ $(B)/synpo.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'includedir=$${prefix}/include/synpo' 'libdir=$${prefix}/$(LIBDIR)' '' \
 	    'Name: synpo' 'Description: policies that transfer across environments and tasks' 'Version: $(VERSION)' \
-	    'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lsynpo -pthread' 'Libs.private: $(DRAW_LIBS)' > $@
+	    'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lsynpo -pthread' 'Libs.private: $(DRAW_LIBS)' > $@.part
+	@$(if_other)
 
-install: all completions $(B)/synpo.pc | $(filter torch,$(MAKECMDGOALS))
+install: all completions $(B)/synpo.pc
 	$(Q)set -e; for file in $(INSTALLED); do \
 	    from=$${file%%:*} to=$${file#*:} mode=644; \
 	    case $$to in bin/*) mode=755 ;; *.a | *.so) [ -e "$$from" ] || continue ;; esac; \
@@ -329,3 +362,5 @@ clean:
 	rm -rf $(B)
 
 -include $(shell find $(B) -type f -name '*.d' 2>/dev/null)
+
+endif # of goals one after the other
