@@ -23,8 +23,8 @@ constexpr Advice kWriteEnd = {kNoEnd, "{} (synpo-gen-expert --end writes one: wa
 constexpr Advice kSmallerRate = {kNotFinite, "{}: try a smaller --lr"};
 
 inline std::string words(const TestedStart& start) {
-  return concat(start.file, ": line ", start.line, " begins where episode ", start.episode, " of synpo-eval -s ", start.seed,
-                " begins: success measured with that seed will be of starts that were learned from",
+  return concat(start.file, ": line ", start.line, " begins where episode ", start.episode, " of synpo-eval -s ",
+                start.seed, " begins: success measured with that seed will be of starts that were learned from",
                 " (synpo-eval --starts training records others)");
 }
 

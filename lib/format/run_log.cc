@@ -40,7 +40,7 @@ struct TsvLog::File {
   std::optional<Leftover> made = {};  // as long as nothing is in it
   std::string made_path = {};
   bool in_place = false, begun = false, left = false;  // left: a stop signal came while a pipe was full
-  uint64_t end = 0;  // of the rows that are continued
+  uint64_t end = 0;                                    // of the rows that are continued
   std::optional<Error> failure = {};
 
   ~File() {
