@@ -1,5 +1,6 @@
 #include "draw/plot/dendrogram.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -31,17 +32,24 @@ void for_branches(const Dendrogram& tree, int pitch, int depth, Stem stem, Bar b
   }
 }
 
-constexpr double kScaleSpacePt = 4, kScaleTickPt = 2.5, kScaleTextPt = 7;
+constexpr double kScaleSpacePt = 4, kScaleTickPt = 2.5, kScaleTextPt = 7, kBetweenLabelsPt = 3;
+constexpr int kMostTicks = 3;
 
 // Calls tick(at, label) with the distance from the leaves, in pixels; nowhere where all are alike.
 template <class Tick>
-void for_scale(const Dendrogram& tree, int depth, Tick tick) {
-  if (tree.height() <= 1e-9) return;
-  const Ticks ticks = nice_ticks(0, tree.height(), 3);
+void for_scale(const Dendrogram& tree, const Ticks& ticks, int depth, Tick tick) {
   for (const double at : ticks.at) tick(int(std::lround(at / tree.height() * depth)), tick_text(at, ticks.step));
 }
 
 }  // namespace
+
+Ticks ticks_side_by_side(const Dendrogram& tree, int depth, const Font& font, const Pixels& px) {
+  const Ticks ticks = nice_ticks(0, tree.height(), kMostTicks);
+  int widest = 0;
+  for (const double at : ticks.at) widest = std::max(widest, font.width(tick_text(at, ticks.step), px(kScaleTextPt)));
+  const bool room = widest + px(kBetweenLabelsPt) <= ticks.step / tree.height() * depth;
+  return room ? ticks : nice_ticks(0, tree.height(), 2);
+}
 
 int tree_scale_height(const Pixels& px) {
   return px(kScaleSpacePt) + px(kScaleTickPt) + px(2) + px(kScaleTextPt) * 5 / 4;
@@ -51,7 +59,8 @@ void draw_scale_beneath(Canvas& canvas, const Dendrogram& tree, int x, int y, in
   if (tree.height() <= 1e-9) return;
   const int top = y + px(kScaleSpacePt), tick = px(kScaleTickPt);
   canvas.fill({x, top, depth, line}, kSoftInk);
-  for_scale(tree, depth - line, [&](int at, const std::string& label) {
+  const Ticks ticks = ticks_side_by_side(tree, depth - line, canvas.font(), px);
+  for_scale(tree, ticks, depth - line, [&](int at, const std::string& label) {
     canvas.fill({x + at, top, line, tick}, kSoftInk);
     canvas.text(x + at, top + tick + px(2), label, px(kScaleTextPt), kSoftInk, Across::kCentre);
   });
@@ -61,7 +70,7 @@ void draw_scale_left(Canvas& canvas, const Dendrogram& tree, int x, int y, int d
   if (tree.height() <= 1e-9) return;
   const int right = x - px(kScaleSpacePt), tick = px(kScaleTickPt);
   canvas.fill({right, y - depth, line, depth}, kSoftInk);
-  for_scale(tree, depth - line, [&](int at, const std::string& label) {
+  for_scale(tree, nice_ticks(0, tree.height(), kMostTicks), depth - line, [&](int at, const std::string& label) {
     canvas.fill({right - tick, y - at - line, tick, line}, kSoftInk);
     canvas.text(right - tick - px(2), y - at, label, px(kScaleTextPt), kSoftInk, Across::kRight, Upright::kMiddle);
   });

@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "draw/colour.h"
+#include "draw/plot/dendrogram.h"
 #include "draw/plot/heatmap.h"
 #include "helpers/font.h"
 #include "helpers/heat_tables.h"
@@ -185,6 +186,17 @@ TEST(Panels, SameBytesEveryTime) {
         .png();
   };
   EXPECT_EQ(bytes(), bytes());
+}
+
+TEST(Dendrogram, LabelsOfItsScaleStandSideBySide) {
+  const auto steps = [](double height, double scale) {
+    const Dendrogram tree{{{0, 1, height}}};
+    return ticks_side_by_side(tree, int(37 * scale), font(), Pixels{scale}).at;
+  };
+  for (const double scale : {1.0, 1.3, 3.0}) {
+    EXPECT_EQ(steps(0.14, scale), (std::vector<double>{0, 0.1})) << "0.05 and 0.10 would touch";
+    EXPECT_EQ(steps(2.2, scale), (std::vector<double>{0, 1, 2}));
+  }
 }
 
 }  // namespace
