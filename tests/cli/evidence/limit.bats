@@ -67,7 +67,7 @@ results() (
     status=0
     reproduce "${asked[@]}" --limit 1s -o part 2>err || status=$?
     [ "$status" = 65 ]
-    grep -q "part/./small/x.ckpt.cut: its pieces are not whole" err
+    grep -q "part/small/x.ckpt.cut: its pieces are not whole" err
 }
 
 # until_there PATTERN: waits for such a file.
