@@ -178,7 +178,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     cat e.jsonl evaluation.jsonl >mixed.jsonl
     learn() { synpo-train "${TINY[@]}" -n 1 --init a.ckpt "$@" 2>err >b.ckpt; }
     learn --no-fresh-starts <evaluation.jsonl
-    grep -q '^synpo-train: warning: standard input: line 1 begins where episode 0 of synpo-eval -s 3 begins: .*--starts training' err
+    begins='line 1 begins where episode 0 of synpo-eval -s 3 begins: .*--starts training'
+    grep -q "^synpo-train: warning: standard input: $begins" err
     [ "$(wc -l <err)" -eq 1 ]
     learn --no-fresh-starts --fill 78 <mixed.jsonl
     grep -q 'warning: standard input: line 61 begins' err
@@ -187,7 +188,8 @@ setup() { set_up pairs.tsv two.tsv e.jsonl a.ckpt m.tsv; }
     synpo-train "${TINY_PAPER[@]}" -n 1 <evaluation.jsonl 2>err >b.ckpt
     grep -q 'warning: standard input: line 1 begins' err
     synpo-finetune adapt -q -c a.ckpt -n 1 <new-evaluation.jsonl 2>err >b.ckpt
-    grep -q '^synpo-finetune: warning: standard input: line 1 begins' err || grep -q '^synpo-finetune adapt: warning: standard input: line 1 begins' err
+    grep -q '^synpo-finetune: warning: standard input: line 1 begins' err ||
+        grep -q '^synpo-finetune adapt: warning: standard input: line 1 begins' err
     # With fresh starts the stream gives the pairs alone.
     learn <evaluation.jsonl
     [ ! -s err ]

@@ -280,7 +280,8 @@ END
 @test "reproduce --shard: stopped with one length and gone on with another, no episode is left out or counted twice" {
     stand_ins
     mv build/synpo-eval build/real
-    printf '#!/bin/bash\n[[ $* != *"--first-episode 2"* ]] || exit 143\nexec %q "$@"\n' "$PWD/build/real" >build/synpo-eval
+    printf '#!/bin/bash\n[[ $* != *"--first-episode 2"* ]] || exit 143\nexec %q "$@"\n' "$PWD/build/real" \
+        >build/synpo-eval
     chmod +x build/synpo-eval
     ! scripts/reproduce small --budget 1e6 --seeds 1 -n 5 --shard 2 -o results || complain "an evaluation that failed"
     [ -e results/synpo-1.greedy.from-0-2 ]
@@ -306,7 +307,10 @@ END
     chmod +x build/synpo-finetune
     mkdir maps
     cp "$ROOT"/scripts/mazes/*.txt maps/
-    page() { scripts/reproduce "$1" --budget 4e6 --seeds 1 -n 1 -o "results/$*" "${@:2}" 2>/dev/null; cat "results/$*/README.md"; }
+    page() {
+        scripts/reproduce "$1" --budget 4e6 --seeds 1 -n 1 -o "results/$*" "${@:2}" 2>/dev/null
+        cat "results/$*/README.md"
+    }
     page table4 >got
     grep -q '^The paper.s are of three seeds. SF is learned by cross-entropy' got
     ! grep 'World:\|toy' got || complain "neither a world of its own nor a toy"
@@ -350,8 +354,9 @@ END
         "table4 --run 0" "table4 --run" "table4 --slurm --merge" "table4 --parallel 2 --run 1" "table4 --parallel x" \
         "table4 -- -p short" "table4 --run 1 -- -p short" "common-runs" \
         "table4 --run 11 --budget 1e6" "table4 --budget 12" "table4 --recipe big" "table4 --temperature 0" "table4 --temperature warm" "table4 --splits 0" "all" \
-        "table4 --limit 10" "table4 --limit 10m --run 1" "table4 --list --budget 10m" "table4 --limit 10m --budget 40m -o other" \
-        "all --limit 10m --budget 10 -o other" "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
+        "table4 --limit 10" "table4 --limit 10m --run 1" "table4 --list --budget 10m" \
+        "table4 --limit 10m --budget 40m -o other" "all --limit 10m --budget 10 -o other" \
+        "table4 --budget some" "table4 --budget foom" "table4 --budget 1.2.3h"; do
         status=0
         # shellcheck disable=SC2086
         scripts/reproduce $words 2>err || status=$?

@@ -260,8 +260,8 @@ standing_in() {
     git init -q .
     git -c user.name=x -c user.email=x@y.z commit -q --allow-empty -m one
     mkdir -p tree/build
-    for name in CHANGELOG.md GUIDE.md LICENSE Makefile README.md RESULTS.md examples lib man python scripts tests tools \
-        packaging; do mkdir "tree/$name"; done
+    for name in CHANGELOG.md GUIDE.md LICENSE Makefile README.md RESULTS.md examples lib man python scripts tests \
+        tools packaging; do mkdir "tree/$name"; done
     cp -r "$ROOT/scripts" "$ROOT/packaging" tree/
     touch -d @1234567890 tree/Makefile
     standing_in bin dh </dev/null

@@ -35,7 +35,7 @@ void for_branches(const Dendrogram& tree, int pitch, int depth, Stem stem, Bar b
 constexpr double kScaleSpacePt = 4, kScaleTickPt = 2.5, kScaleTextPt = 7, kBetweenLabelsPt = 3;
 constexpr int kMostTicks = 3;
 
-// Calls tick(at, label) with the distance from the leaves, in pixels; nowhere where all are alike.
+// Calls tick(at, label) with the distance from the leaves, in pixels.
 template <class Tick>
 void for_scale(const Dendrogram& tree, const Ticks& ticks, int depth, Tick tick) {
   for (const double at : ticks.at) tick(int(std::lround(at / tree.height() * depth)), tick_text(at, ticks.step));

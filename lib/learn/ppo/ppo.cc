@@ -250,10 +250,11 @@ void Ppo::resume(const Checkpoint& checkpoint) {
   if (!file.has("train/ppo/position"))
     fail(Exit::kData, "the checkpoint is not one of synpo-finetune ppo, or was stripped");
   options_.check_same(checkpoint);
-  naming_file(checkpoint, [&] { load_training_state(file); });
+  const uint64_t seed = naming_file(checkpoint, [&] { return load_training_state(file); });
+  if (seed != seed_) fail(Exit::kData, "the run in the checkpoint has seed ", seed, ", not ", seed_);
 }
 
-void Ppo::load_training_state(const SafeTensors& file) {
+uint64_t Ppo::load_training_state(const SafeTensors& file) {
   get_tensors(file, "train/ppo/v/", model_.policy->parameters(), v_.data());
   get_tensors(file, "train/ppo/", value_->parameters(), value_parameters_.data());
   get_tensors(file, "train/ppo/value/v/", value_->parameters(), value_v_.data());
@@ -263,10 +264,9 @@ void Ppo::load_training_state(const SafeTensors& file) {
   constexpr int64_t kMost = int64_t(1) << 53;
   if (position[0] < 0 || position[1] < 0 || position[0] > kMost || position[1] > kMost)
     fail(Exit::kData, "tensor 'train/ppo/position' is malformed");
-  if (uint64_t(position[2]) != seed_)
-    fail(Exit::kData, "the run in the checkpoint has seed ", position[2], ", not ", seed_);
   updates_ = position[0];
   steps_ = position[1];
+  return uint64_t(position[2]);
 }
 
 }  // namespace synpo

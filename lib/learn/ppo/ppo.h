@@ -55,7 +55,7 @@ class Ppo {
   const PpoLosses& first_minibatch() const { return first_; }
 
  private:
-  void load_training_state(const SafeTensors& file);
+  uint64_t load_training_state(const SafeTensors& file);  // returns the run's seed
   struct Rollout {
     std::vector<uint8_t> observations;
     std::vector<int> env, task, action;

@@ -10,7 +10,8 @@ bar() {
     for ((count = $2; count <= 64 * $2; count *= 2)); do
         rm -f x
         run -0 on_terminal "stty cols $1; ${3//@/$count}"
-        tr '\r' '\n' <"$BATS_TEST_TMPDIR/screen" | sed 's/\x1b\[J//' | { grep -E '%|/s' || true; } >"$BATS_TEST_TMPDIR/bar"
+        tr '\r' '\n' <"$BATS_TEST_TMPDIR/screen" | sed 's/\x1b\[J//' |
+            { grep -E '%|/s' || true; } >"$BATS_TEST_TMPDIR/bar"
         first=$(head -n 1 "$BATS_TEST_TMPDIR/bar")
         if [[ $first == *%* && $first != *"100 %"* ]]; then return; fi
     done
